@@ -8,7 +8,7 @@ from rga.lazy import listing, opening
 if TYPE_CHECKING:
     from rga.building import ModelBuilder
     from rga.checking import check
-    from rga.diagnosis import diagnose
+    from rga.diagnosis import diagnose, diagnose_modes
     from rga.drawing import draw, plot_model, plot_results
     from rga.drawing.charts import plot_findings, plot_record
     from rga.errors import InputError
@@ -51,6 +51,7 @@ _HOMES = {
     "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "diagnose_modes": "rga.diagnosis",
     "draw": "rga.drawing",
     "import_model": "rga.importing",
     "live": "rga.jobs.live",
@@ -90,6 +91,7 @@ __all__ = [
     "check",
     "diagnose",
     "diagnose_many",
+    "diagnose_modes",
     "draw",
     "import_model",
     "live",

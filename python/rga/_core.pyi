@@ -16,6 +16,7 @@ __all__ = [
     "GaussianWindow",
     "InvalidInput",
     "Loaded",
+    "ModalReanalysis",
     "NotConverged",
     "OutputKind",
     "Reanalysis",
@@ -25,6 +26,7 @@ __all__ = [
     "UnstableStructure",
     "count_terms",
     "instructions",
+    "modal_energies",
     "modes",
     "respond",
     "respond_nonlinear",
@@ -73,6 +75,11 @@ class NotConverged(ArithmeticError):
 
     row: int
     """The row of the time series."""
+
+def modal_energies(
+    structure: StructureArrays, masses: MassArrays, shapes: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Energies in shapes [c, n, 6]: strain [c, m + s], kinetic [c, m + n]."""
 
 def modes(
     structure: StructureArrays, masses: MassArrays, count: int
@@ -215,6 +222,16 @@ class Reanalysis:
 
     def rates(self, loaded: Loaded) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Members [k], and derivatives [k, p, o] of the outputs by the logarithm of their EA."""
+
+@final
+class ModalReanalysis:
+    """A structure whose modes are known, and those near it; `help(ModalReanalysis)` tells more."""
+
+    def __new__(cls, structure: StructureArrays, masses: MassArrays, count: int) -> Self: ...
+    def modes(
+        self, structure: StructureArrays, masses: MassArrays, count: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Modes of a structure near this one, as by `modes`."""
 
 @final
 class Loaded:

@@ -51,10 +51,9 @@ def write_findings(
             says so in the place of the report.
     """
     directory = as_path(directory, "directory")
-    extended = findings.account.extended
     write_whole(
         {
-            directory / MODEL: model_text(extended).encode(),
+            directory / MODEL: model_text(findings.extended).encode(),
             directory / FINDINGS: (findings.to_json() + "\n").encode(),
         }
     )

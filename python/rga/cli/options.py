@@ -71,6 +71,13 @@ RecordFiles = Annotated[
         help="Record: a logger's file, several in time, or a folder with import.toml.",
     ),
 ]
+RecordFilesIfAny = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="[RECORD...]",
+        help="Record: a logger's file, several in time, or a folder with import.toml.",
+    ),
+]
 MappingFile = Annotated[
     Path | None,
     typer.Option(

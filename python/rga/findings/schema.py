@@ -9,6 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.criteria import Criteria
+from rga.findings.modal_arrays import ModalArrays
+from rga.model.schema import Model
 from rga.notebook import short_html
 
 if TYPE_CHECKING:
@@ -160,6 +162,7 @@ class Findings(FindingsPart):
     versions: dict[str, str] = Field(default_factory=dict)
 
     _account: DiagnosisArrays | None = PrivateAttr(default=None)
+    _modes: ModalArrays | None = PrivateAttr(default=None)
 
     @property
     def account(self) -> DiagnosisArrays:
@@ -167,6 +170,16 @@ class Findings(FindingsPart):
         if self._account is None:
             raise ValueError("these findings were read from a file: the arrays are not kept there")
         return self._account
+
+    @property
+    def modes(self) -> ModalArrays | None:
+        """The modes behind the findings, for the report; None where none were looked at."""
+        return self._modes
+
+    @property
+    def extended(self) -> Model:
+        """The model with the causes that were found."""
+        return self._modes.extended if self._modes is not None else self.account.extended
 
     def sentence(self) -> str:
         """The verdict in plain words."""

@@ -79,6 +79,8 @@ class Effect(BaseModel):
     takes_section: ClassVar[bool] = False
     #: True where the parameters change the structure itself.
     structural: ClassVar[bool] = False
+    #: True where the effect changes nothing but natural frequencies and mode shapes.
+    on_modes: ClassVar[bool] = False
     #: True where the effect changes nothing but what sensors show.
     on_sensors: ClassVar[bool] = False
     #: True where loads, and what is done to those of others, follow from the geometry and alpha
@@ -317,6 +319,10 @@ class Effect(BaseModel):
         self, loads: dict[str, list["Load"]], structure: "Structure", values: Values
     ) -> None:
         """Change loads of other effects, by effect name, in place."""
+
+    def frequency_factor(self, values: Values) -> FloatArray:
+        """By which natural frequencies are read larger than they are, float[rows]."""
+        return np.ones(len(next(iter(values.values()))))
 
     def change_readings(self, readings: "Readings", values: Values) -> None:
         """Change what the sensors of its place show, in place: all, where it names none."""

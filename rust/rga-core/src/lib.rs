@@ -31,7 +31,7 @@ pub use paths::condensed::Condensed;
 pub use paths::directions::Directions;
 pub use paths::friction::{Bearings, slide};
 pub use paths::linear::respond;
-pub use paths::modes::{Modes, modes};
+pub use paths::modes::{ModalEnergies, ModalReanalysis, Modes, modal_energies, modes};
 pub use paths::nonlinear::respond_nonlinear;
 pub use paths::rank_one_terms::{Varied, count_terms};
 pub use paths::reanalysis::{Loaded, Reanalysis, StiffnessDifference};

@@ -1,15 +1,14 @@
 //! The functions of `rga._core`.
 
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rga_core::{Bearings, Varied};
 
 use crate::arrays::{Held, numbers};
 use crate::exceptions::to_python;
-use crate::read::{read_masses, read_outputs, read_problem, read_structure};
+use crate::read::{read_outputs, read_problem, read_structure};
 
-type Vector<'py> = Bound<'py, PyArray1<f64>>;
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Linear static response of a truss or frame structure.
@@ -73,57 +72,6 @@ pub(crate) fn respond<'py>(
         .map_err(|error| to_python(py, error))?;
     let shape = [patterns.pattern_count(), wanted.kind.len()];
     PyArray1::from_vec(py, results).reshape(shape)
-}
-
-/// Natural frequencies and mode shapes of a structure, the lowest first.
-///
-/// Masses move with the shapes in which members deform (consistent), bars along all three axes;
-/// what has no mass makes no mode. That none is missed is proved by a count (Sylvester's law).
-///
-/// Parameters
-/// ----------
-/// structure : as for `respond`, with n nodes and m members
-/// masses : line f64[m] along members [kg/m]; section f64[m, 3], of the section about the local
-///     axes, per length [kg m]; nodal f64[n, 6] at the nodes [kg, kg m2]
-/// count : of modes that are wanted
-///
-/// Returns
-/// -------
-/// f64[c], squares of the circular frequencies [rad2/s2]; f64[c, n, 6], shapes with a modal mass
-/// of 1 kg, whose largest motion is positive; f64[c, 3], roots of their effective modal masses along
-/// the axes [kg^0.5]; f64[3], the mass that moves along each axis [kg]. There may be fewer modes
-/// than are wanted.
-///
-/// Raises
-/// ------
-/// InvalidInput, UnstableStructure
-#[pyfunction]
-pub(crate) fn modes<'py>(
-    py: Python<'py>,
-    structure: &Bound<'py, PyDict>,
-    masses: &Bound<'py, PyDict>,
-    count: usize,
-) -> PyResult<(
-    Vector<'py>,
-    Bound<'py, PyArray3<f64>>,
-    Matrix<'py>,
-    Vector<'py>,
-)> {
-    read_structure!(model from structure);
-    read_masses!(weights from masses);
-    let found = py
-        .detach(|| rga_core::modes(&model, &weights, count))
-        .map_err(|error| to_python(py, error))?;
-    let shape = [found.eigenvalues.len(), model.coordinates.len(), 6];
-    let shapes = PyArray1::from_vec(py, found.shapes).reshape(shape)?;
-    let participation = PyArray1::from_vec(py, found.participation).reshape([shape[0], 3])?;
-    let eigenvalues = PyArray1::from_vec(py, found.eigenvalues);
-    Ok((
-        eigenvalues,
-        shapes,
-        participation,
-        PyArray1::from_slice(py, &found.mass),
-    ))
 }
 
 /// Response in the equilibrium of the deformed structure, row by row.

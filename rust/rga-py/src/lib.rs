@@ -9,6 +9,7 @@ mod condensation;
 mod exceptions;
 mod functions;
 mod gaussian_window;
+mod modes;
 mod read;
 mod reanalysis;
 
@@ -39,12 +40,14 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<condensation::Condensation>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_class::<batch_solver::BatchSolver>()?;
+    module.add_class::<modes::ModalReanalysis>()?;
     module.add_class::<reanalysis::Loaded>()?;
     module.add_class::<reanalysis::Reanalysis>()?;
     module.add_class::<reanalysis::StiffnessDifference>()?;
     module.add_function(wrap_pyfunction!(functions::count_terms, module)?)?;
     module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
-    module.add_function(wrap_pyfunction!(functions::modes, module)?)?;
+    module.add_function(wrap_pyfunction!(modes::modal_energies, module)?)?;
+    module.add_function(wrap_pyfunction!(modes::modes, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)

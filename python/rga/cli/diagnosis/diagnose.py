@@ -1,6 +1,8 @@
 """`rga diagnose`: what is wrong, why, where, and how sure."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,41 +13,67 @@ from rga.cli.options import (
     ModelFile,
     OutputDirectory,
     PrintPdf,
-    RecordFiles,
+    RecordFilesIfAny,
     Seed,
 )
-from rga.errors import ReportError
+from rga.errors import InputError, ReportError
+
+if TYPE_CHECKING:
+    from rga.findings import Findings
+
+    Progress = Callable[[str, float], None]
+
+ModalFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--modal",
+        metavar="FILE",
+        help="Natural frequencies and mode shapes found in windows of time, in place of a record.",
+    ),
+]
 
 
 def diagnose(
     model: ModelFile,
-    record: RecordFiles,
     output: OutputDirectory,
+    record: RecordFilesIfAny = None,
+    modal: ModalFile = None,
     mapping: MappingFile = None,
     criteria: CriteriaFile = None,
     seed: Seed = 0,
     json: JsonTarget = None,
     pdf: PrintPdf = False,
 ) -> None:
-    """Diagnose what the model gets wrong of a record."""
-    diagnose_into(output, model, record, mapping, criteria, seed, json, pdf)
+    """Diagnose what the model gets wrong of a record, or of measured modes."""
+    if bool(record) == (modal is not None):
+        raise InputError(
+            "a record and modes cannot be diagnosed together"
+            if record
+            else "there is nothing to compare the model with",
+            "rga diagnose",
+            "give a RECORD, or measured modes with --modal",
+        )
+    if modal is not None:
+        if mapping is not None:
+            raise InputError(
+                "a modal record is read without a mapping", "--import", "leave it out"
+            )
+        _diagnose_modes(model, modal, output, criteria, seed, json, pdf)
+    else:
+        _diagnose_record(model, record or [], output, mapping, criteria, seed, json, pdf)
 
 
-def diagnose_into(
-    output: Path,
+def _diagnose_record(
     model: Path,
     record: list[Path],
+    output: Path,
     mapping: Path | None,
     criteria: Path | None,
     seed: int,
     target: str | None,
     pdf: bool,
 ) -> None:
-    """Write findings, extended model and report, and say the verdict."""
-    import json
-
-    from rga.cli.output import check_targets, whole_directory, write_json
-    from rga.cli.progress import shown_progress
+    from rga.cli.output import check_targets
     from rga.cli.reading import read_record
     from rga.findings.criteria import load_criteria
     from rga.model import load_model
@@ -58,12 +86,67 @@ def diagnose_into(
     check_targets(target)
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
+
+    def found(progress: "Progress") -> "Findings":
+        return diagnose(structure, measured, criteria=chosen, seed=seed, progress=progress)
+
+    _write(output, found, measured.warnings, target, pdf)
+
+
+def _diagnose_modes(
+    model: Path,
+    modal: Path,
+    output: Path,
+    criteria: Path | None,
+    seed: int,
+    target: str | None,
+    pdf: bool,
+) -> None:
+    from rga.cli.output import check_targets
+    from rga.findings.criteria import load_criteria
+    from rga.model import load_model
+    from rga.outputs import check_outputs
+    from rga.records.modal.read import load_modal_record
+
+    structure = load_model(model)
+    chosen = None if criteria is None else load_criteria(criteria)
+    measured = load_modal_record(modal, structure)
+    check_outputs(output)
+    check_targets(target)
+    from rga.diagnosis import diagnose_modes
+
+    def found(progress: "Progress") -> "Findings":
+        return diagnose_modes(structure, measured, criteria=chosen, seed=seed, progress=progress)
+
+    _write(output, found, [], target, pdf)
+
+
+def _write(
+    output: Path,
+    found: "Callable[[Progress], Findings]",
+    told: list[str],
+    target: str | None,
+    pdf: bool,
+) -> None:
+    """Write findings, extended model and report, and say the verdict.
+
+    Args:
+        output: the directory.
+        found: makes the findings.
+        told: warnings that have been told.
+        target: of the findings as JSON.
+        pdf: whether the report is printed as well.
+    """
+    import json
+
+    from rga.cli.output import whole_directory, write_json
+    from rga.cli.progress import shown_progress
     from rga.report.pdf import write_pdf
 
     fault: ReportError | None = None
     with whole_directory(output) as draft:
         with shown_progress() as progress:
-            findings = diagnose(structure, measured, criteria=chosen, seed=seed, progress=progress)
+            findings = found(progress)
         try:
             report = findings.write(draft)
             if pdf:
@@ -72,7 +155,7 @@ def diagnose_into(
             fault = error
         content = json.loads((draft / "findings.json").read_text(encoding="utf-8"))
     for warning in findings.warnings:
-        if warning not in measured.warnings:
+        if warning not in told:
             typer.echo(f"warning: {warning}", err=True)
     if target is not None:
         write_json(content, target)

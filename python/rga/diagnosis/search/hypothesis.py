@@ -103,22 +103,30 @@ class Hypothesis:
 
 
 def hypotheses(model: Model, sensors: Sequence[str], measured: Collection[str]) -> list[Hypothesis]:
-    """All hypotheses that the vocabulary allows on a model.
+    """All hypotheses that the vocabulary allows on a model, of what static readings show.
 
     Args:
         model: as it was given.
         sensors: channels that work; a hypothesis on another sensor is left out.
         measured: contexts that were measured; one on another context is left out.
     """
+    kinds = [kind for kind in Effect.vocabulary.values() if not kind.on_modes]
+    return hypotheses_of(kinds, model, sensors, measured)
+
+
+def hypotheses_of(
+    kinds: Sequence[type[Effect]], model: Model, sensors: Sequence[str], measured: Collection[str]
+) -> list[Hypothesis]:
+    """The same of some kinds."""
     by_kind = {
         kind: [place for place in kind.places(model) if _seen(kind, place, sensors, measured)]
-        for kind in Effect.vocabulary.values()
+        for kind in kinds
     }
-    kinds = sum(bool(places) for places in by_kind.values())
+    acting = sum(bool(places) for places in by_kind.values())
     found = []
     for kind, places in by_kind.items():
         forms = [(place, priors) for place in places for priors in kind.forms(model, place)]
-        found += [Hypothesis(kind, place, priors, len(forms), kinds) for place, priors in forms]
+        found += [Hypothesis(kind, place, priors, len(forms), acting) for place, priors in forms]
     return found
 
 

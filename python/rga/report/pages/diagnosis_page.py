@@ -13,6 +13,7 @@ from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words, not_ruled_out
 from rga.findings.schema import Cause
+from rga.model import Model
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.model.parameter import listed
@@ -115,7 +116,7 @@ def page(findings: Findings) -> dict[str, Any]:
         ],
         "fold": len(findings.unidentifiable) > LONG_LIST,
         "unused": sorted(record.unused.items()),
-        "provenance": provenance(findings),
+        "provenance": provenance(findings, model, record.zero),
     }
 
 
@@ -302,16 +303,17 @@ def contexts(findings: Findings) -> list[tuple[str, str, list[tuple[str, str]]]]
     return found
 
 
-def provenance(findings: Findings) -> list[tuple[str, str]]:
-    """What made this report."""
-    account = findings.account
+def provenance(
+    findings: Findings, model: Model, zero: tuple[float, float] | None = None
+) -> list[tuple[str, str]]:
+    """What made this report, of a model, and over which times channels were set to zero [s]."""
     found = [("seed", str(findings.seed))]
-    if account.model.path is not None:
-        found.append(("model file", account.model.path.name))
+    if model.path is not None:
+        found.append(("model file", model.path.name))
     found.append(("model SHA-256", findings.model_sha256 or DASH))
     found.append(("record SHA-256", findings.record_sha256 or DASH))
-    if account.record.zero is not None:
-        first, last = account.record.zero
+    if zero is not None:
+        first, last = zero
         found.append(("channels zeroed over", f"{number(first)} to {number(last)} s of the record"))
     differing = findings.criteria.differing().items()
     found += [(f"criterion {name}", f"{value:g}") for name, value in differing]

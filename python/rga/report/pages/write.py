@@ -9,6 +9,7 @@ from rga.files import write_whole
 from rga.findings import Findings
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import Lost
+from rga.report.pages.modal_page import modal_page
 
 if TYPE_CHECKING:
     from rga.twin.history import History
@@ -27,6 +28,8 @@ def write_report(findings: Findings, path: Path) -> Path:
     Raises:
         ValueError: the findings come from a file and carry no arrays to draw.
     """
+    if findings.modes is not None:
+        return _write("modal.html.j2", modal_page(findings, findings.modes), path)
     return _write("report.html.j2", page(findings), path)
 
 

@@ -1,11 +1,13 @@
 """The structures whose modes are computed, and what the core computes of them."""
 
+from functools import cached_property
+
 import numpy as np
 
 from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
-from rga.model.effect import when_all_act
+from rga.model.effect import Values, when_all_act
 from rga.model.schema import Model
 from rga.model.structure import Structure, build_structure
 from rga.simulation.contexts import Contexts, contexts_by_name
@@ -50,6 +52,25 @@ class ModalStructures:
                 "leave out these effects, or put stiffnesses in their place",
             )
         return structures, request.state_of_row
+
+    @cached_property
+    def needed(self) -> set[str]:
+        """Context variables that change the structure."""
+        middle = {name: sum(one.range) / 2 for name, one in self._model.context.items()}
+        return {
+            name
+            for name, one in self._model.context.items()
+            if len(self.under({**middle, name: np.array(one.range)})[0]) > 1
+        }
+
+    def each_under(self, contexts: Contexts) -> list[Structure]:
+        """The structure of every row, with the errors of `under` (InputError)."""
+        structures, rows = self.under(contexts)
+        return [structures[number] for number in rows]
+
+    def parameters(self, contexts: Contexts) -> dict[str, Values]:
+        """Parameters of the effects, by name, float[rows] each."""
+        return self._simulator.parameters(dict(contexts_by_name(contexts, self._model.context)))
 
     def one_under(self, contexts: Contexts | None) -> Structure:
         """The structure under one row of contexts, with the errors of `under` (InputError)."""

@@ -41,6 +41,11 @@ impl Connection {
         }
     }
 
+    /// Whether the member moves as its nodes do.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.steps.is_empty()
+    }
+
     /// The same for fixed-end forces; the error is a local dof that is loaded
     /// although nothing holds it.
     pub(crate) fn pass_on(&self, forces: &mut Vector12) -> Result<(), usize> {

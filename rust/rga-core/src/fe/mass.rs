@@ -7,7 +7,7 @@
 
 use nalgebra::Vector4;
 
-use crate::fe::element::{Beam, Bending, Matrix12, Shape, Vector12};
+use crate::fe::element::{Beam, Bending, Matrix12, Shape};
 use crate::fe::member::{Frame, Member, pairs};
 use crate::fe::model::Model;
 use crate::input::Masses;
@@ -20,6 +20,98 @@ const POINTS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
+/// Of every member and node, in global axes.
+pub(crate) struct ElementMasses {
+    members: Vec<MemberMass>,
+    /// Of all dofs.
+    nodal: Vec<f64>,
+}
+
+enum MemberMass {
+    /// Of a bar, along each axis.
+    Bar { nodes: [usize; 2], total: f64 },
+    Frame {
+        nodes: [usize; 2],
+        mass: Box<Matrix12>,
+    },
+}
+
+impl ElementMasses {
+    pub(crate) fn new(model: &Model, masses: &Masses) -> Self {
+        let of_member = |(index, member): (usize, &Member)| {
+            let section = masses.section.row(index);
+            let line = LineMass {
+                mass: masses.line[index],
+                section: [section[0], section[1], section[2]],
+            };
+            let nodes = member.nodes;
+            match &member.frame {
+                None => MemberMass::Bar {
+                    nodes,
+                    total: line.mass * member.length,
+                },
+                Some(frame) => MemberMass::Frame {
+                    nodes,
+                    mass: Box::new(member.to_global(&frame_mass(frame, line))),
+                },
+            }
+        };
+        Self {
+            members: model.members.iter().enumerate().map(of_member).collect(),
+            nodal: masses.nodal.values.to_vec(),
+        }
+    }
+
+    /// Calls `add(row, column, value)` for all entries; entries repeat.
+    pub(crate) fn for_each(&self, mut add: impl FnMut(usize, usize, f64)) {
+        for member in &self.members {
+            member.for_each(&mut add);
+        }
+        for (dof, &mass) in self.nodal.iter().enumerate() {
+            add(dof, dof, mass);
+        }
+    }
+
+    /// Of a motion, twice the kinetic energy of every member, then of every node.
+    pub(crate) fn kinetic_energies(&self, motion: &[f64]) -> impl Iterator<Item = f64> {
+        let of_members = self.members.iter().map(|member| {
+            let mut energy = 0.0;
+            member.for_each(|row, column, value| energy += motion[row] * value * motion[column]);
+            energy
+        });
+        let own = self.nodal.chunks_exact(6).zip(motion.chunks_exact(6));
+        let of_nodes = own.map(|(masses, motion)| {
+            let each = masses.iter().zip(motion);
+            each.map(|(mass, motion)| mass * motion * motion).sum()
+        });
+        of_members.chain(of_nodes)
+    }
+}
+
+impl MemberMass {
+    fn for_each(&self, mut add: impl FnMut(usize, usize, f64)) {
+        match self {
+            Self::Bar { nodes, total } => {
+                for (a, b) in pairs(2) {
+                    let share = if a == b { 1.0 / 3.0 } else { 1.0 / 6.0 };
+                    for axis in 0..3 {
+                        add(6 * nodes[a] + axis, 6 * nodes[b] + axis, total * share);
+                    }
+                }
+            }
+            Self::Frame { nodes, mass } => {
+                for (row, column) in pairs(12) {
+                    add(
+                        6 * nodes[row / 6] + row % 6,
+                        6 * nodes[column / 6] + column % 6,
+                        mass[(row, column)],
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// What a member weighs per length.
 #[derive(Debug, Clone, Copy)]
 struct LineMass {
@@ -29,88 +121,49 @@ struct LineMass {
     section: [f64; 3],
 }
 
-/// Calls `add(row, column, value)` for all entries; entries repeat.
-pub(crate) fn for_each_mass(
-    model: &Model,
-    masses: &Masses,
-    mut add: impl FnMut(usize, usize, f64),
-) {
-    for (index, member) in model.members.iter().enumerate() {
-        let section = masses.section.row(index);
-        let line = LineMass {
-            mass: masses.line[index],
-            section: [section[0], section[1], section[2]],
-        };
-        member_mass(member, line, &mut add);
-    }
-    for (dof, &mass) in masses.nodal.values.iter().enumerate() {
-        add(dof, dof, mass);
-    }
-}
-
-fn member_mass(member: &Member, line: LineMass, mut add: impl FnMut(usize, usize, f64)) {
-    match &member.frame {
-        None => {
-            let total = line.mass * member.length;
-            for (a, b) in pairs(2) {
-                let share = if a == b { 1.0 / 3.0 } else { 1.0 / 6.0 };
-                for axis in 0..3 {
-                    let (row, column) = (6 * member.nodes[a] + axis, 6 * member.nodes[b] + axis);
-                    add(row, column, total * share);
-                }
-            }
-        }
-        Some(frame) => {
-            let global = member.to_global(&frame_mass(frame, line));
-            for (row, column) in pairs(12) {
-                add(
-                    6 * member.nodes[row / 6] + row % 6,
-                    6 * member.nodes[column / 6] + column % 6,
-                    global[(row, column)],
-                );
-            }
-        }
-    }
-}
-
 /// Between the nodes, in local axes.
 fn frame_mass(frame: &Frame, line: LineMass) -> Matrix12 {
     let mut mass = frame.at_nodes(&beam_mass(&frame.beam, line));
     for (end, reach) in [(0, frame.rigid[0]), (1, -frame.rigid[1])] {
-        mass += zone_mass(end, reach, line);
+        if reach != 0.0 {
+            add_zone_mass(&mut mass, end, reach, line);
+        }
     }
     mass
 }
 
+/// A motion by its few dofs.
+type Motion<const N: usize> = [(usize, f64); N];
+
+/// `mass` += motion inertia motion'
+fn add<const N: usize>(mass: &mut Matrix12, motion: Motion<N>, inertia: f64) {
+    for (row, left) in motion {
+        for (column, right) in motion {
+            mass[(row, column)] += left * inertia * right;
+        }
+    }
+}
+
 fn beam_mass(beam: &Beam, line: LineMass) -> Matrix12 {
     let mut mass = Matrix12::zeros();
+    let [about_x, about_y, about_z] = line.section;
+    let about_x = if beam.gj > 0.0 { about_x } else { 0.0 };
     for (place, weight) in POINTS {
-        let [shape_xy, shape_xz] =
-            [0, 1].map(|plane| moving(&beam.planes[plane], beam.length, place));
-        let along = |first: usize| {
-            let mut row = Vector12::zeros();
-            (row[first], row[first + 6]) = (1.0 - place, place);
-            row
+        let [xy, xz] = [0, 1].map(|plane| moving(&beam.planes[plane], beam.length, place));
+        let along = |first: usize| [(first, 1.0 - place), (first + 6, place)];
+        let across = |plane: usize, shape: &Vector4<f64>| -> Motion<4> {
+            std::array::from_fn(|at| {
+                let (dof, sign) = beam.planes[plane].dofs[at];
+                (dof, sign * shape[at])
+            })
         };
-        let across = |plane: usize, shape: &Vector4<f64>| {
-            let mut row = Vector12::zeros();
-            for (&(dof, sign), value) in beam.planes[plane].dofs.iter().zip(shape.iter()) {
-                row[dof] = sign * value;
-            }
-            row
-        };
-        let [about_x, about_y, about_z] = line.section;
-        let motions = [
-            (line.mass, along(0)),
-            (line.mass, across(0, &shape_xy.deflection)),
-            (line.mass, across(1, &shape_xz.deflection)),
-            (if beam.gj > 0.0 { about_x } else { 0.0 }, along(3)),
-            (about_y, across(1, &shape_xz.rotation)),
-            (about_z, across(0, &shape_xy.rotation)),
-        ];
-        for (inertia, motion) in motions {
-            mass += motion * motion.transpose() * (inertia * weight * beam.length);
-        }
+        let part = weight * beam.length;
+        add(&mut mass, along(0), line.mass * part);
+        add(&mut mass, across(0, &xy.deflection), line.mass * part);
+        add(&mut mass, across(1, &xz.deflection), line.mass * part);
+        add(&mut mass, along(3), about_x * part);
+        add(&mut mass, across(1, &xz.rotation), about_y * part);
+        add(&mut mass, across(0, &xy.rotation), about_z * part);
     }
     mass
 }
@@ -127,27 +180,23 @@ fn moving(bending: &Bending, length: f64, place: f64) -> Shape {
 }
 
 /// A rigid zone from its node, `reach` along the member.
-fn zone_mass(end: usize, reach: f64, line: LineMass) -> Matrix12 {
-    let mut mass = Matrix12::zeros();
+fn add_zone_mass(mass: &mut Matrix12, end: usize, reach: f64, line: LineMass) {
     let first = 6 * end;
     for (place, weight) in POINTS {
-        let lever = place * reach;
-        let unit = |dof: usize| {
-            let mut row = Vector12::zeros();
-            row[first + dof] = 1.0;
-            row
-        };
-        let motions = [
-            (line.mass, unit(0)),
-            (line.mass, unit(1) + unit(5) * lever),
-            (line.mass, unit(2) - unit(4) * lever),
-            (line.section[0], unit(3)),
-            (line.section[1], unit(4)),
-            (line.section[2], unit(5)),
-        ];
-        for (inertia, motion) in motions {
-            mass += motion * motion.transpose() * (inertia * weight * reach.abs());
+        let (lever, part) = (place * reach, weight * reach.abs());
+        add(mass, [(first, 1.0)], line.mass * part);
+        add(
+            mass,
+            [(first + 1, 1.0), (first + 5, lever)],
+            line.mass * part,
+        );
+        add(
+            mass,
+            [(first + 2, 1.0), (first + 4, -lever)],
+            line.mass * part,
+        );
+        for (axis, inertia) in line.section.into_iter().enumerate() {
+            add(mass, [(first + 3 + axis, 1.0)], inertia * part);
         }
     }
-    mass
 }

@@ -222,6 +222,9 @@ impl Frame {
 
     /// A form of the motions of the bare beam's ends, as one of the motions of the nodes.
     pub(crate) fn at_nodes(&self, form: &Matrix12) -> Matrix12 {
+        if self.connection.is_rigid() && self.rigid == [0.0; 2] {
+            return *form;
+        }
         let mut behind = Matrix12::identity();
         for mut motions in behind.column_iter_mut() {
             let inner = self.connection.inner(&motions.clone_owned());

@@ -122,6 +122,14 @@ impl Model {
     /// Twice the strain energy of a motion, each element with a factor on its stiffness: members
     /// before springs.
     pub(crate) fn energy(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> f64 {
+        let energies = self.energies(displacements).enumerate();
+        energies
+            .map(|(element, energy)| factor(element) * energy)
+            .sum()
+    }
+
+    /// The same of every element.
+    pub(crate) fn energies(&self, displacements: &[f64]) -> impl Iterator<Item = f64> {
         let of_members = self
             .members
             .iter()
@@ -131,10 +139,7 @@ impl Model {
             let elongation: f64 = terms.map(|(dof, sign)| sign * displacements[dof]).sum();
             spring.stiffness * elongation * elongation
         });
-        let energies = of_members.chain(of_springs).enumerate();
-        energies
-            .map(|(element, energy)| factor(element) * energy)
-            .sum()
+        of_members.chain(of_springs)
     }
 
     /// Forces of the nodes on members and springs: K u + fixed-end forces.

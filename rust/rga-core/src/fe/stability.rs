@@ -60,10 +60,34 @@ impl Solver {
             .iter()
             .for_each(|rotation| rotation.hold(&mut matrix));
         let places = reduction.places(&model.nodes);
-        let mut solver = Self::analyse(matrix, free_rotations, &places, 1.0)?;
+        Self::analyse(matrix, free_rotations, &places, 1.0)?.standing(model, reduction)
+    }
+
+    /// The solver of another structure with the analysis of this one, where what it couples
+    /// is coupled in this one.
+    pub(crate) fn of_another(&self, model: &Model, reduction: &Reduction) -> Result<Option<Self>> {
+        let Some(mut matrix) = assemble(model, reduction).in_places_of(&self.matrix) else {
+            return Ok(None);
+        };
+        let free_rotations = FreeRotation::find(&matrix, reduction);
+        free_rotations
+            .iter()
+            .for_each(|rotation| rotation.hold(&mut matrix));
+        let solver = Self {
+            scale: vec![1.0; matrix.size()],
+            factor: self.factor.another()?,
+            free_rotations,
+            matrix,
+        };
+        solver.standing(model, reduction).map(Some)
+    }
+
+    /// Factorised, or refused.
+    fn standing(mut self, model: &Model, reduction: &Reduction) -> Result<Self> {
+        let solver = &mut self;
         let stands = solver.factorise(model, reduction);
         if stands && !solver.moves_freely(model, reduction, |_| 1.0)? {
-            Ok(solver)
+            Ok(self)
         } else {
             Err(solver.unstable(model, reduction))
         }
@@ -95,6 +119,13 @@ impl Solver {
             factor: self.factor.another()?,
             free_rotations: self.free_rotations.clone(),
         })
+    }
+
+    /// S (K - shift M) S, S its scaling: as many eigenvalues are negative as without it.
+    pub(crate) fn shifted(&self, mass: &LowerTriangle, shift: f64) -> LowerTriangle {
+        let mut scaled = mass.clone();
+        scaled.scale(&self.scale);
+        self.matrix.less(shift, &scaled)
     }
 
     pub(crate) fn free_rotations(&self) -> &[FreeRotation] {

@@ -14,10 +14,14 @@ use crate::error::{Error, Result};
 const BLOCK: usize = 4;
 /// A vector that orthogonalisation leaves less of was in the space already.
 const DEPENDENT: f64 = 1e-10;
-/// Residual of an eigenvector, in the norm of K, over its eigenvalue.
+/// Residual of an eigenvector, in the norm of K, over its eigenvalue, which errs by the square of
+/// that: of a space that starts with nothing, and of one that starts with vectors near by.
 const CONVERGED: f64 = 1e-11;
-/// Steps between two looks at what has converged.
+const CONVERGED_NEAR: f64 = 1e-8;
+/// Steps between two looks at what has converged, of a space that starts with few vectors.
 const LOOK: usize = 3;
+/// Sums that a product is parted into, side by side in registers. Bits depend on it.
+const BESIDE: usize = 8;
 
 /// K and M as what is asked of them.
 pub(crate) trait Pencil {
@@ -41,7 +45,10 @@ pub(crate) struct Lanczos<'a, P: Pencil> {
     /// What the next irregular number follows from.
     drawn: u64,
     /// Nothing is left outside of the space.
-    pub exhausted: bool,
+    exhausted: bool,
+    /// Steps until what has converged is looked at again.
+    look: usize,
+    converged: f64,
 }
 
 /// Eigenvalues of K^-1 M, the largest first, with vectors of length 1 in the norm of K.
@@ -64,13 +71,23 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
             extended: 0,
             drawn: 0,
             exhausted: false,
+            look: LOOK,
+            converged: CONVERGED,
         }
+    }
+
+    /// A space that starts with what K^-1 M makes of vectors near the eigenvectors.
+    pub(crate) fn near(pencil: &'a P, vectors: &[Vec<f64>]) -> Result<Self> {
+        let mut space = Self::new(pencil);
+        (space.look, space.converged) = (1, CONVERGED_NEAR);
+        space.add(vectors.iter().map(|one| pencil.mass_times(one)).collect())?;
+        Ok(space)
     }
 
     /// Grows the space until so many pairs have converged, or all that there are.
     pub(crate) fn grow(&mut self, count: usize) -> Result<RitzPairs> {
         loop {
-            for _ in 0..LOOK {
+            for _ in 0..self.look {
                 if !self.exhausted {
                     self.step()?;
                 }
@@ -177,7 +194,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
                 products.map(|(one, other)| one * other).sum::<f64>()
             });
             let residual = outside.map(|part| part * part).sum::<f64>().sqrt();
-            all_so_far &= residual <= CONVERGED * value;
+            all_so_far &= residual <= self.converged * value;
             found.converged += usize::from(all_so_far);
             let mut vector = vec![0.0; self.pencil.size()];
             for (share, one) in shares.iter().zip(&self.vectors) {
@@ -191,7 +208,20 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
 }
 
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| one * other).sum()
+    let (ones, rest) = one.as_chunks::<BESIDE>();
+    let (others, further) = other.as_chunks::<BESIDE>();
+    let mut sums = [0.0; BESIDE];
+    for (one, other) in ones.iter().zip(others) {
+        for ((sum, one), other) in sums.iter_mut().zip(one).zip(other) {
+            *sum += one * other;
+        }
+    }
+    let rest: f64 = rest
+        .iter()
+        .zip(further)
+        .map(|(one, other)| one * other)
+        .sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 fn subtract(from: &mut [f64], share: f64, other: &[f64]) {

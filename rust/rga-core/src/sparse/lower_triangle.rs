@@ -11,6 +11,9 @@ pub struct LowerTriangle {
     pub values: Vec<f64>,
 }
 
+/// Of entries, beside those of the diagonal in their row and column.
+const ROUNDING: f64 = 1e-14;
+
 /// (row, column, value)
 pub(crate) type Entry = (usize, usize, f64);
 
@@ -79,6 +82,73 @@ impl LowerTriangle {
         let at = self.place(row, column);
         let there = at < self.first[column + 1] && self.rows[at] == row;
         there.then_some(at)
+    }
+
+    /// The same with the places of another, those of it that are empty here as zeros; nothing
+    /// where there is more than rounding in places that the other lacks.
+    pub(crate) fn in_places_of(&self, other: &Self) -> Option<Self> {
+        if self.size() != other.size() {
+            return None;
+        }
+        let diagonal = self.diagonal();
+        let mut moved = Self {
+            values: vec![0.0; other.values.len()],
+            ..other.clone()
+        };
+        for column in 0..self.size() {
+            for at in self.first[column]..self.first[column + 1] {
+                let (row, value) = (self.rows[at], self.values[at]);
+                match moved.find(row, column) {
+                    Some(place) => moved.values[place] = value,
+                    None if value * value
+                        <= ROUNDING * ROUNDING * (diagonal[row] * diagonal[column]).abs() => {}
+                    None => return None,
+                }
+            }
+        }
+        Some(moved)
+    }
+
+    /// K - times M
+    pub(crate) fn less(&self, times: f64, other: &Self) -> Self {
+        let mut found = Self {
+            first: Vec::with_capacity(self.first.len()),
+            rows: Vec::with_capacity(self.rows.len()),
+            values: Vec::with_capacity(self.rows.len()),
+        };
+        found.first.push(0);
+        for column in 0..self.size() {
+            let (mut own, mut its) = (self.first[column], other.first[column]);
+            loop {
+                let row = if own < self.first[column + 1] {
+                    self.rows[own]
+                } else {
+                    usize::MAX
+                };
+                let beside = if its < other.first[column + 1] {
+                    other.rows[its]
+                } else {
+                    usize::MAX
+                };
+                let next = row.min(beside);
+                if next == usize::MAX {
+                    break;
+                }
+                let mut value = 0.0;
+                if row == next {
+                    value += self.values[own];
+                    own += 1;
+                }
+                if beside == next {
+                    value -= times * other.values[its];
+                    its += 1;
+                }
+                found.rows.push(next);
+                found.values.push(value);
+            }
+            found.first.push(found.rows.len());
+        }
+        found
     }
 
     pub(crate) fn diagonal(&self) -> Vec<f64> {

@@ -1,6 +1,6 @@
 """What moves with the structure and is not in the model."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from rga.model.action import Action
@@ -32,6 +32,7 @@ class AddedMass(Effect):
     )
     usual = f"per_length {USUAL} kg/m, mass {USUAL_ON_NODE} kg: judgements"
     structural = True
+    on_modes = True
     group: Annotated[str | list[str] | None, Place("group")] = None
     node: Annotated[str | list[str] | None, Place("node")] = None
     per_length: Annotated[Value, Parameter("kg/m", 0.0)] = 0.0
@@ -45,6 +46,12 @@ class AddedMass(Effect):
                 "added_mass is along the members of a group (give group and per_length [kg/m]) or "
                 "on nodes (give node and mass [kg])"
             )
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from ({"group": group} for group in model.groups)
+        heavy = (mass.node for mass in model.masses.values() if mass.node is not None)
+        yield from ({"node": node} for node in dict.fromkeys(heavy))
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:

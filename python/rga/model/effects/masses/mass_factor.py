@@ -1,6 +1,6 @@
 """Masses that are larger or smaller than the model says."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from rga.model.action import Action
@@ -30,6 +30,7 @@ class MassFactor(Effect):
         "Probabilistic Model Code, 2.1)"
     )
     structural = True
+    on_modes = True
     material: Annotated[str | list[str] | None, Place("material")] = None
     mass: Annotated[str | list[str] | None, Place("mass")] = None
     factor: Annotated[Value, Parameter("-", 1.0, least=0.0)] = 1.0
@@ -37,6 +38,16 @@ class MassFactor(Effect):
     def check(self, model: Model) -> None:
         if (self.material is None) == (self.mass is None):
             raise ValueError("mass_factor needs one place: give 'material' or 'mass'")
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        heavy = [name for name, one in model.materials.items() if one.density]
+        yield from ({"material": name} for name in heavy)
+        if len(heavy) > 1:
+            yield {"material": heavy}
+        yield from ({"mass": name} for name in model.masses)
+        if len(model.masses) > 1:
+            yield {"mass": list(model.masses)}
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:

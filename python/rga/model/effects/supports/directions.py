@@ -32,6 +32,13 @@ def rotations(model: Model, *, held: bool) -> Iterator[dict[str, Any]]:
         yield from _alone_and_together(model, dof, bending)
 
 
+def sprung_nodes(model: Model) -> Iterator[dict[str, Any]]:
+    """Nodes that springs of the model tie to the ground: one by one, by lines, and all."""
+    for dof in _in_plane(model, DOFS):
+        names = [one.node for one in model.springs if one.to is None and one.dof == dof]
+        yield from ({"node": place, "dof": dof} for place in _lines(model, {name: name for name in names}))
+
+
 def turns(dof: str) -> bool:
     """Whether a dof is a rotation."""
     return DOFS.index(dof) >= 3
@@ -65,9 +72,15 @@ def _acting(model: Model, dof: str, held: bool) -> list[str]:
 
 def _alone_and_together(model: Model, dof: str, names: list[str]) -> Iterator[dict[str, Any]]:
     """A dof of supports one by one, by lines across the bridge, and of all."""
-    yield from ({"support": name, "dof": dof} for name in names)
+    nodes = {name: model.supports[name].node for name in names}
+    yield from ({"support": place, "dof": dof} for place in _lines(model, nodes))
+
+
+def _lines(model: Model, nodes: dict[str, str]) -> Iterator[str | list[str]]:
+    """Names of nodes one by one, those of a line across the bridge together, and all of them."""
+    yield from nodes
     lines: dict[float, list[str]] = {}
-    for name in names:
-        lines.setdefault(round(model.nodes[model.supports[name].node][0], 3), []).append(name)
-    together = [*lines.values(), names] if len(lines) > 1 else [names]
-    yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)
+    for name, node in nodes.items():
+        lines.setdefault(round(model.nodes[node][0], 3), []).append(name)
+    together = [*lines.values(), list(nodes)] if len(lines) > 1 else [list(nodes)]
+    yield from (line for line in together if len(line) > 1)

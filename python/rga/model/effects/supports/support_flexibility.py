@@ -11,24 +11,27 @@ from rga.model.effects.members.scales import mean_axial_stiffness
 from rga.model.effects.supports.bases import BASE_WORDS, base_stiffness
 from rga.model.effects.supports.directions import (
     Direction,
-    Supports,
     directions,
     rotations,
+    sprung_nodes,
     supported,
     turns,
 )
-from rga.model.parameter import Parameter, Positive, Prior, Value, listed
+from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Structure
 
 ALONG = Positive(0.3, 1.5)
+#: behind a spring of the model: as stiff as that, or a few times softer or stiffer
+BEHIND = Positive(1.0, 1.5)
 
 
 class SupportFlexibility(Effect):
     """A stiffness [N/m or N m/rad] in place of a rigid direction of a support.
 
     Soft ground, or a column base that turns; two in one direction give way one behind the other. A
-    rotation is proposed where a frame member bends with it.
+    rotation is proposed where a frame member bends with it. Where a spring of the model holds a
+    node, the place is that node, and the stiffness stands behind that of the spring.
     """
 
     kind: Literal["support_flexibility"] = "support_flexibility"
@@ -40,13 +43,23 @@ class SupportFlexibility(Effect):
         check="any displacement sensor whose reference stands on the same pier",
         test="{load}, over the support {place}, with its movement measured against firm ground",
     )
-    usual = f"stiffness {ALONG} times the mean EA/L of the members: a judgement; {BASE_WORDS}"
+    usual = (
+        f"stiffness {ALONG} times the mean EA/L of the members, behind a spring of the model "
+        f"{BEHIND} times its own: judgements; {BASE_WORDS}"
+    )
     structural = True
-    support: Supports
+    support: Annotated[str | list[str] | None, Place("support")] = None
+    node: Annotated[str | list[str] | None, Place("node")] = None
     dof: Direction
     stiffness: Annotated[Value, Parameter("N/m", float("inf"), least=0.0)] = float("inf")
 
     def check(self, model: Model) -> None:
+        if (self.support is None) == (self.node is None):
+            raise ValueError("support_flexibility needs one place: give 'support' or 'node'")
+        sprung = {(spring.node, spring.dof) for spring in model.springs if spring.to is None}
+        for name in listed(self.node):
+            if (name, self.dof) not in sprung:
+                raise ValueError(f"no spring to the ground holds node {name!r} in {self.dof}")
         for name in listed(self.support):
             if self.dof not in model.supports[name].fixed:
                 raise ValueError(f"support {name!r} leaves {self.dof} free: name a held direction")
@@ -55,16 +68,26 @@ class SupportFlexibility(Effect):
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from directions(model, held=True)
         yield from rotations(model, held=True)
+        yield from sprung_nodes(model)
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         along = ALONG.times(mean_axial_stiffness(model))
+        if "node" in place:
+            named = listed(place["node"])
+            known = [
+                spring.stiffness
+                for spring in model.springs
+                if spring.node in named and spring.dof == place["dof"] and spring.to is None
+            ]
+            return {"stiffness": BEHIND.times(float(np.mean(known)))}
         return {"stiffness": base_stiffness(model, place) if turns(place["dof"]) else along}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         if np.isinf(value["stiffness"]):
             return
-        for node in supported(structure, self.support):
+        nodes = [structure.nodes[name] for name in listed(self.node)]
+        for node in [*supported(structure, self.support), *nodes]:
             _give_way(structure, node, DOFS.index(self.dof), value["stiffness"])
 
 

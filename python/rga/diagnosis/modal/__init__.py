@@ -1,0 +1,1 @@
+"""Diagnosis by natural frequencies and mode shapes: what a model gets wrong of how it swings."""

@@ -1,0 +1,206 @@
+"""What could be wrong of how a structure swings: hypotheses, and which are worth a fit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis.modal.fit import predicted
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.search.hypothesis import LATE, Hypothesis, hypotheses_of
+from rga.model.effect import Effect
+from rga.model.schema import Model
+
+#: places of a kind at one member or node that are simulated: by what they would explain, and by
+#: how much they move
+EXPLAINING, MOVING = 12, 6
+#: beginnings that are distinguished, and windows that must lie on either side of one
+BEGINNINGS, EITHER = 30, 5
+
+
+@dataclass(frozen=True)
+class ModalProspect:
+    """A hypothesis with what its trial values promise.
+
+    Attributes:
+        hypothesis: with an onset where one promises more.
+        z: coordinates to start a fit from.
+        score: approximate log evidence, beside what is found already.
+        largest: d' of the largest of its trial values.
+    """
+
+    hypothesis: Hypothesis
+    z: tuple[float, ...]
+    score: float
+    largest: float
+
+
+def modal_hypotheses(model: Model, measured: Sequence[str]) -> list[Hypothesis]:
+    """All hypotheses that natural frequencies and mode shapes can show.
+
+    Kinds that need contexts are there where all that drive the model were measured.
+    """
+    kinds = []
+    for kind in Effect.vocabulary.values():
+        if not (kind.structural or kind.on_modes) or (kind.on_sensors and not kind.on_modes):
+            continue
+        if kind.overrides("change_values") and set(model.context) - set(measured):
+            continue
+        kinds.append(kind)
+    return hypotheses_of(kinds, model, (), measured)
+
+
+def prospects(
+    likelihood: ModalLikelihood,
+    candidates: Sequence[Hypothesis],
+    found: Sequence[Hypothesis],
+    z: FloatArray,
+    progress: Callable[[float], None],
+) -> list[ModalProspect]:
+    """Candidates by what they promise beside what is found, the best first.
+
+    Trial values are simulated: changes are finite, and the pairing is made anew.
+
+    Args:
+        likelihood: of the modes.
+        candidates: hypotheses without onset.
+        found: hypotheses that are in the model already.
+        z: their coordinates.
+        progress: called with the share that is done.
+    """
+    base = predicted(likelihood, found, z)
+    if base is None:
+        return []
+    left = likelihood.residual(base)
+    worth = _worth_simulating(likelihood, candidates, left)
+    steps = _Steps.of(likelihood, left)
+    several = []
+    for number, (candidate, simulated) in enumerate(zip(candidates, worth, strict=True)):
+        progress(number / max(len(candidates), 1))
+        if not simulated or any(candidate.same_place(one) for one in found):
+            continue
+        best: ModalProspect | None = None
+        largest = 0.0
+        for trial in product(*(prior.trials for prior in candidate.priors.values())):
+            there = predicted(likelihood, [*found, candidate], np.array([*z, *trial]))
+            if there is None:
+                continue
+            rest = likelihood.residual(there)
+            change = left - rest
+            largest = max(largest, float(np.linalg.norm(change)))
+            prior = float(np.square(trial).sum())
+            score = _score(left, rest, change, prior) + candidate.log_prior
+            options = [ModalProspect(candidate, trial, score, largest)]
+            moved = (there.log_f - base.log_f).mean(0)
+            later = steps.best(moved, prior)
+            if later is not None:
+                onset, gained = later
+                late = candidate.beginning(onset)
+                options.append(ModalProspect(late, trial, gained + late.log_prior, largest))
+            for one in options:
+                if best is None or one.score > best.score:
+                    best = one
+        if best is not None:
+            several.append(
+                ModalProspect(best.hypothesis, best.z, best.score, max(largest, best.largest))
+            )
+    progress(1.0)
+    return sorted(several, key=lambda one: -one.score)
+
+
+def _score(left: FloatArray, rest: FloatArray, change: FloatArray, prior: float) -> float:
+    """Log evidence of the trial, or of a part of its change where that promises more."""
+    size = float(change @ change)
+    whole = 0.5 * float(left @ left - rest @ rest) - 0.5 * prior
+    if size == 0.0:
+        return whole
+    along = float(change @ left)
+    part = 0.5 * along**2 / (size + prior) if along > 0 else -np.inf
+    return max(whole, min(part, 0.5 * along**2 / size)) - 0.5 * float(np.log1p(size))
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """Changes that begin in a window, by products that are known beforehand.
+
+    Attributes:
+        onsets: times at which one may begin [s].
+        along: of a step of one in ln f with what is left, float[beginnings, modes].
+        squares: of such a step, float[beginnings, modes].
+    """
+
+    onsets: FloatArray
+    along: FloatArray
+    squares: FloatArray
+
+    @classmethod
+    def of(cls, likelihood: ModalLikelihood, left: FloatArray) -> "_Steps":
+        time = likelihood.readings.time
+        last = len(time) - EITHER
+        places = np.unique(np.linspace(EITHER, last, BEGINNINGS).astype(int))
+        places = places[(places >= EITHER) & (places <= last)]
+        first = (np.arange(len(time)) >= places[:, None]).astype(float)
+        along, squares, start = [], [], 0
+        for mode, white in enumerate(likelihood.steps(first)):
+            if likelihood.hidden[mode]:
+                along.append(np.zeros(len(places)))
+                squares.append(np.zeros(len(places)))
+                continue
+            own = left[start : start + white.shape[1]]
+            start += white.shape[1]
+            along.append(white @ own)
+            squares.append((white**2).sum(1))
+        return cls(time[places], np.array(along).T, np.array(squares).T)
+
+    def best(self, moved: FloatArray, prior: float) -> tuple[float, float] | None:
+        """The likeliest onset of a change of ln f, and what it promises; None where none does."""
+        if not len(self.onsets):
+            return None
+        along, sizes = self.along @ moved, self.squares @ moved**2
+        with np.errstate(invalid="ignore", divide="ignore"):
+            scores = np.where(
+                along > 0, 0.5 * along**2 / (sizes + prior) - 0.5 * np.log1p(sizes), -np.inf
+            )
+        best = int(np.argmax(scores))
+        return (float(self.onsets[best]), float(scores[best])) if scores[best] > 0 else None
+
+
+def _worth_simulating(
+    likelihood: ModalLikelihood, candidates: Sequence[Hypothesis], left: FloatArray
+) -> BoolArray:
+    """Which candidates are simulated: of the places of a kind at one member or node, some.
+
+    Slopes, which cost nothing, rank them: those that would explain most of what is left, and those
+    that move most. Between kinds, and for groups, they decide nothing.
+    """
+    trials = likelihood.trials
+    strain, kinetic = trials.energies()
+    model = trials.model
+    members = {name: number for number, name in enumerate(model.members)}
+    nodes = {name: len(members) + number for number, name in enumerate(model.nodes)}
+    at_once = likelihood.of_steady(np.eye(len(likelihood.readings.modes)))
+    slopes: dict[str, list[tuple[int, FloatArray]]] = {}
+    for number, one in enumerate(candidates):
+        place = one.place
+        heavy = place.get("node") if one.name == "added_mass" else None
+        if one.name == "mass_factor" and isinstance(place.get("mass"), str):
+            heavy = model.masses[place["mass"]].node
+        if isinstance(place.get("member"), str):
+            slope = strain[:, members[place["member"]]]
+        elif isinstance(heavy, str):
+            slope = kinetic[:, nodes[heavy]]
+        else:
+            continue
+        slopes.setdefault(one.name, []).append((number, slope))
+    chosen = np.ones(len(candidates), dtype=bool)
+    for of_kind in slopes.values():
+        numbers = np.array([number for number, _ in of_kind])
+        changes = np.array([slope for _, slope in of_kind]) @ at_once
+        sizes = (changes**2).sum(1)
+        scores = (changes @ left[: changes.shape[1]]) ** 2 / (1.0 + sizes)
+        chosen[numbers] = False
+        chosen[numbers[np.argsort(-scores, kind="stable")[:EXPLAINING]]] = True
+        chosen[numbers[np.argsort(-sizes, kind="stable")[:MOVING]]] = True
+    return chosen

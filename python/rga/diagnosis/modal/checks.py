@@ -1,0 +1,68 @@
+"""What the causes leave of measured modes, and how they predict modes that were left out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.diagnosis.modal.fit import ModalFit, fitted
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.trials import Prediction
+
+#: deviations of a frequency, and of a shape, from which on a mode is off
+OFF = 3.0
+SHAPE_OFF = 2.0
+
+
+@dataclass(frozen=True)
+class LeftOutModes:
+    """Modes predicted without having been looked at.
+
+    Attributes:
+        before: squared deviation of each by the model as given, float[modes].
+        after: the same by causes that were fitted to the other modes.
+    """
+
+    before: FloatArray
+    after: FloatArray
+
+
+def squares(likelihood: ModalLikelihood, prediction: Prediction) -> FloatArray:
+    """Squared deviations of the frequencies, over what noise and model may be off, float[modes]."""
+    return np.asarray((likelihood.mean_off(prediction) / likelihood.mean_spread()) ** 2)
+
+
+def left_out_modes(likelihood: ModalLikelihood, fit: ModalFit) -> LeftOutModes:
+    """Every mode left out in turn, and predicted by causes that others put where they are."""
+    nothing = likelihood.trials.predict({})
+    before = squares(likelihood, nothing)
+    after = before.copy()
+    if not fit.hypotheses or len(before) < 2:
+        return LeftOutModes(before, after)
+    for mode in range(len(before)):
+        other = fitted(likelihood.hiding(mode), fit.hypotheses, fit.z)
+        if other.prediction is not None:
+            after[mode] = squares(likelihood, other.prediction)[mode]
+    return LeftOutModes(before, after)
+
+
+def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
+    """In words: modes whose frequency or shape a prediction does not have."""
+    words = []
+    off, spread = likelihood.mean_off(prediction), likelihood.mean_spread()
+    for mode, name in enumerate(likelihood.readings.modes):
+        if abs(off[mode]) > OFF * spread[mode]:
+            words.append(
+                f"mode {name} lies {np.expm1(off[mode]):+.1%} off what is simulated, "
+                f"{abs(off[mode]) / spread[mode]:.1f} times what a right model leaves"
+            )
+        apart = likelihood.shape_off(mode, prediction)
+        if float(apart @ apart) > (SHAPE_OFF * likelihood.shape_spread(mode)) ** 2:
+            words.append(
+                f"the shape of mode {name} is not the simulated one (MAC {prediction.mac[mode]:.2f})"
+            )
+    if prediction.doubtful:
+        words.append(
+            "another pairing of measured with computed modes is nearly as probable as this one"
+        )
+    return words

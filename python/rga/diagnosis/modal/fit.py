@@ -1,0 +1,153 @@
+"""Hypotheses fitted to measured modes, and their evidence by Laplace's approximation.
+
+As for static readings (`search.laplace`), with predictions that are made anew at every step: a
+removed member, or two modes that trade places, are no matter of slopes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.trials import Prediction
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.diagnosis.search.laplace import effects_at
+from rga.errors import InputError, UnstableStructureError
+
+#: difference of a derivative by z; steps, and how often one is shortened
+STEP, STEPS, SHORTENED = 1e-3, 12, 6
+#: bounds of z and of a step in it, and the gain that is worth another
+FARTHEST, LONGEST, ENOUGH = 8.0, 2.0, 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ModalFit:
+    """Hypotheses fitted together.
+
+    Attributes:
+        likelihood: of the modes.
+        hypotheses: those fitted.
+        z: standard normal coordinates of all parameters, float[parameters].
+        prediction: there; None where the model cannot be simulated.
+        residual: whitened, float[k].
+        signatures: derivatives of the whitened prediction by z, float[parameters, k].
+        log_evidence: against no effect at all.
+    """
+
+    likelihood: ModalLikelihood
+    hypotheses: tuple[Hypothesis, ...]
+    z: FloatArray
+    prediction: Prediction | None
+    residual: FloatArray
+    signatures: FloatArray
+    log_evidence: float
+
+    @property
+    def information(self) -> FloatArray:
+        """Of z, prior and data together, float[parameters, parameters]."""
+        return np.asarray(self.signatures @ self.signatures.T + np.eye(len(self.z)))
+
+    def spreads(self) -> FloatArray:
+        """Posterior standard deviation of each coordinate."""
+        return np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information))))
+
+    def of(self, number: int) -> slice:
+        """The coordinates of one hypothesis."""
+        counts = [len(one.priors) for one in self.hypotheses]
+        first = sum(counts[:number])
+        return slice(first, first + counts[number])
+
+
+def predicted(
+    likelihood: ModalLikelihood, hypotheses: Sequence[Hypothesis], z: FloatArray
+) -> Prediction | None:
+    """The modes with hypotheses at coordinates; None where they cannot be simulated."""
+    try:
+        return likelihood.trials.predict(effects_at(hypotheses, z))
+    except (InputError, UnstableStructureError):
+        return None
+
+
+def fitted(
+    likelihood: ModalLikelihood,
+    hypotheses: Sequence[Hypothesis],
+    start: Sequence[float] | FloatArray,
+) -> ModalFit:
+    """The most likely parameters of hypotheses together, by Gauss-Newton steps."""
+    z = np.array(start, dtype=float)
+    prediction = predicted(likelihood, hypotheses, z)
+    if prediction is None:
+        return _impossible(likelihood, hypotheses, z)
+    residual = likelihood.residual(prediction)
+    loss = float(residual @ residual + z @ z)
+    signatures = np.zeros((len(z), len(residual)))
+    for _ in range(STEPS):
+        found = _signatures(likelihood, hypotheses, z, residual)
+        if found is None:
+            return _impossible(likelihood, hypotheses, z)
+        signatures = found
+        slope = signatures @ residual - z
+        move = np.linalg.solve(signatures @ signatures.T + np.eye(len(z)), slope)
+        if float(move @ slope) < ENOUGH:
+            break
+        move *= min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
+        for _ in range(SHORTENED):
+            there = np.clip(z + move, -FARTHEST, FARTHEST)
+            other = predicted(likelihood, hypotheses, there)
+            if other is not None:
+                left = likelihood.residual(other)
+                cost = float(left @ left + there @ there)
+                if cost < loss:
+                    break
+            move = move / 3
+        else:
+            break
+        gained, loss = loss - cost, cost
+        z, prediction, residual = there, other, left
+        if gained < ENOUGH:
+            break
+    return _weighed(likelihood, hypotheses, z, prediction, residual, signatures)
+
+
+def _signatures(
+    likelihood: ModalLikelihood,
+    hypotheses: Sequence[Hypothesis],
+    z: FloatArray,
+    residual: FloatArray,
+) -> FloatArray | None:
+    columns = np.zeros((len(z), len(residual)))
+    for number, along in enumerate(np.eye(len(z))):
+        ahead = predicted(likelihood, hypotheses, z + STEP * along)
+        if ahead is None:
+            return None
+        columns[number] = (residual - likelihood.residual(ahead)) / STEP
+    return columns
+
+
+def _weighed(
+    likelihood: ModalLikelihood,
+    hypotheses: Sequence[Hypothesis],
+    z: FloatArray,
+    prediction: Prediction | None,
+    residual: FloatArray,
+    signatures: FloatArray,
+) -> ModalFit:
+    nothing = likelihood.residual(likelihood.trials.predict({}))
+    information = signatures @ signatures.T + np.eye(len(z))
+    loss = float(residual @ residual + z @ z)
+    log_evidence = 0.5 * (float(nothing @ nothing) - loss)
+    log_evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
+    log_evidence += sum(one.log_prior for one in hypotheses)
+    return ModalFit(
+        likelihood, tuple(hypotheses), z, prediction, residual, signatures, log_evidence
+    )
+
+
+def _impossible(
+    likelihood: ModalLikelihood, hypotheses: Sequence[Hypothesis], z: FloatArray
+) -> ModalFit:
+    residual = likelihood.residual(likelihood.trials.predict({}))
+    nowhere = np.zeros((len(z), len(residual)))
+    return ModalFit(likelihood, tuple(hypotheses), z, None, residual, nowhere, -np.inf)

@@ -1,0 +1,146 @@
+"""How probable measured modes are, given what a model predicts of them.
+
+The error of a frequency is that of a window, with memory of the window before, and one that the
+model makes of the mode in all windows. A measured shape is off by what noise and a model that is
+right in everything else make of 1 - MAC.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.simulation.modal.pairing import SHAPE_ERROR
+
+#: error that a model makes of a frequency when it is right in everything that one can name, as a
+#: share of it: Georgia Tech's footbridge and others leave 1 to 2 %
+MODEL_ERROR = 0.01
+
+
+@dataclass(frozen=True)
+class _Series:
+    """The whitening of one mode's frequencies: x' C^-1 y is the product of whitened columns."""
+
+    seen: BoolArray
+    weight: FloatArray
+    memory: FloatArray
+    along: FloatArray
+    shrunk: float
+
+    @classmethod
+    def of(cls, seen: BoolArray, scatter: float, memory: float, level: float) -> "_Series":
+        apart = np.diff(np.flatnonzero(seen), prepend=-1).astype(float)
+        kept = memory**apart
+        kept[:1] = 0.0
+        weight = 1.0 / (scatter * np.sqrt(1.0 - kept**2))
+        ones = weight * (1.0 - kept)
+        length = float(np.linalg.norm(ones))
+        # The error of the model is the same in all windows: a column of ones of variance level^2.
+        shrunk = 1.0 - 1.0 / np.sqrt(1.0 + (level * length) ** 2)
+        return cls(seen, weight, kept, ones / length, shrunk)
+
+    def whiten(self, columns: FloatArray) -> FloatArray:
+        """Of columns float[..., windows], float[..., windows seen]."""
+        own = columns[..., self.seen]
+        white = own * self.weight
+        white[..., 1:] -= self.weight[1:] * self.memory[1:] * own[..., :-1]
+        return np.asarray(white - self.shrunk * (white @ self.along)[..., None] * self.along)
+
+
+class ModalLikelihood:
+    """The likelihood of measured modes.
+
+    Args:
+        trials: what predicts them.
+        level: error that a model makes of every frequency, as a share of it.
+        hidden: modes that are not looked at, bool[modes].
+    """
+
+    def __init__(
+        self, trials: ModalTrials, level: float = MODEL_ERROR, hidden: BoolArray | None = None
+    ) -> None:
+        self.trials, self.level = trials, level
+        self.readings: ModalReadings = trials.readings
+        count = len(self.readings.modes)
+        self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
+        noise = zip(self.readings.scatter, self.readings.memory, strict=True)
+        self._series = [
+            _Series.of(np.isfinite(log_f), float(scatter), float(memory), level)
+            for log_f, (scatter, memory) in zip(self.readings.log_f.T, noise, strict=True)
+        ]
+
+    def hiding(self, mode: int) -> "ModalLikelihood":
+        """The same without one of the modes."""
+        hidden = self.hidden.copy()
+        hidden[mode] = True
+        return ModalLikelihood(self.trials, self.level, hidden)
+
+    def with_level(self, level: float) -> "ModalLikelihood":
+        """The same with another error of the model."""
+        return ModalLikelihood(self.trials, level, self.hidden)
+
+    def residual(self, prediction: Prediction) -> FloatArray:
+        """What a prediction misses, whitened: its square is that under the covariance."""
+        off = self.frequencies_off(prediction)
+        parts = [
+            series.whiten(off[:, mode])
+            for mode, series in enumerate(self._series)
+            if not self.hidden[mode]
+        ]
+        parts += [
+            self.shape_off(mode, prediction) / self.shape_spread(mode)
+            for mode in range(len(self._series))
+            if not self.hidden[mode]
+        ]
+        return np.concatenate(parts)
+
+    def of_steady(self, changes: FloatArray) -> FloatArray:
+        """Whitened changes of ln f that are the same in all windows, float[k, modes]: float[k, n].
+
+        They stand first in a residual, the shapes behind them.
+        """
+        windows = np.ones(len(self.readings.time))
+        parts = [
+            np.outer(changes[:, mode], series.whiten(windows))
+            for mode, series in enumerate(self._series)
+            if not self.hidden[mode]
+        ]
+        return np.concatenate(parts, axis=1)
+
+    def steps(self, first: FloatArray) -> list[FloatArray]:
+        """Whitened columns that begin in windows, float[beginnings, windows seen] of each mode."""
+        return [series.whiten(first) for series in self._series]
+
+    def frequencies_off(self, prediction: Prediction) -> FloatArray:
+        """Measured ln f less predicted, float[windows, modes]; zero where not found."""
+        return np.nan_to_num(self.readings.log_f - prediction.log_f)
+
+    def shape_off(self, mode: int, prediction: Prediction) -> FloatArray:
+        """The part of a measured shape that is not along the predicted one, float[points of it]."""
+        look = self.readings.looks[mode]
+        if not len(look.at):
+            return np.zeros(0)
+        own = self.trials.at_points(prediction.shapes[[mode]])[0, look.at]
+        length = float(own @ own)
+        along = own * (float(own @ look.shape) / length) if length > 0 else 0.0 * own
+        return np.asarray(look.shape - along)
+
+    def shape_spread(self, mode: int) -> float:
+        """Standard deviation of that."""
+        return float(np.sqrt(0.5 * SHAPE_ERROR + self.readings.shape_noise[mode]))
+
+    def mean_off(self, prediction: Prediction) -> FloatArray:
+        """Mean of measured ln f less predicted, float[modes]."""
+        off = self.readings.log_f - prediction.log_f
+        return np.asarray(np.nanmean(off, axis=0))
+
+    def mean_spread(self) -> FloatArray:
+        """Standard deviation of that, the error of the model with it, float[modes]."""
+        spreads = []
+        for series, scatter in zip(self._series, self.readings.scatter, strict=True):
+            memory = float(series.memory.max(initial=0.0))
+            count = max(1.0, series.seen.sum() * (1.0 - memory) / (1.0 + memory))
+            spreads.append(np.hypot(self.level, scatter / np.sqrt(count)))
+        return np.array(spreads)

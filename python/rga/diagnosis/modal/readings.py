@@ -1,0 +1,202 @@
+"""Modes that were measured: frequencies window by window, their noise, and shapes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.arrays import FloatArray, IntArray
+from rga.errors import InputError
+from rga.model.schema import Model
+from rga.records.modal.record import ModalRecord
+from rga.simulation.modal.pairing import Expected, mac
+from rga.simulation.modal.simulator import ModalSimulator
+from rga.simulation.modal.windows import named_modes
+
+#: scatter of a frequency of which nothing is known: one test repeated gives half to two per cent
+UNKNOWN_SCATTER = 0.01
+#: least scatter that repeats are believed to show: clocks and the resolution of spectra leave more
+LEAST_SCATTER = 2e-4
+#: windows that show a scatter by themselves
+REPEATS = 8
+#: most that one window says of the next
+MOST_MEMORY = 0.95
+
+
+@dataclass(frozen=True)
+class ModalReadings:
+    """Modes of a record by name.
+
+    Attributes:
+        modes: names of those that were found, in the order of the model.
+        time: of the windows [s], float[windows].
+        contexts: of the windows, float[windows] each.
+        log_f: logarithms of the frequencies [ln Hz], float[windows, modes]; NaN where not found.
+        scatter: of one window beside the others, as a share of the frequency, float[modes].
+        memory: correlation of the errors of a window and the next, float[modes].
+        looks: what each mode looks like: median frequency, and the mean of the measured shapes,
+            which has length one; without points where no shape was measured.
+        shape_noise: what 1 - MAC of the mean shape is by noise, float[modes].
+        found: share of the windows in which each mode was found, float[modes].
+        doubtful: windows of which another pairing is nearly as probable.
+        unnamed: entries of the record that are none of the modes.
+        sha256: of the record.
+    """
+
+    modes: tuple[str, ...]
+    time: FloatArray
+    contexts: dict[str, FloatArray]
+    log_f: FloatArray
+    scatter: FloatArray
+    memory: FloatArray
+    looks: tuple[Expected, ...]
+    shape_noise: FloatArray
+    found: FloatArray
+    doubtful: int
+    unnamed: int
+    sha256: str
+
+    @classmethod
+    def of(cls, model: Model, record: ModalRecord) -> "ModalReadings":
+        """The modes that a model expects, out of a record.
+
+        Raises:
+            InputError: none was found, or the model has no modes.
+        """
+        expected = ModalSimulator(model).expected
+        named = named_modes(record, model, expected)
+        names = [name for k, name in enumerate(expected) if (named.mode == k).any()]
+        if not names:
+            raise InputError(
+                "none of the modes that the model expects is in the record",
+                f"modes {', '.join(expected)} of model {model.name!r}",
+                "compare the frequencies and shapes of the record with `near`, `within` and "
+                "`shape` of the modes, and the names of the points",
+            )
+        windows = record.windows
+        count = len(named.time)
+        numbers = [list(expected).index(name) for name in names]
+        log_f = np.full((count, len(names)), np.nan)
+        stated = np.full(len(names), np.nan)
+        looks, shape_noise = [], np.zeros(len(names))
+        points = {name: k for k, name in enumerate(model.points)}
+        at = np.array([points[name] for name in record.points], dtype=np.int64)
+        for column, number in enumerate(numbers):
+            own = np.flatnonzero(named.mode == number)
+            log_f[windows[own], column] = np.log(record.frequency[own])
+            sd = record.frequency_sd[own] / record.frequency[own]
+            if np.isfinite(sd).any():
+                stated[column] = float(np.nanmedian(sd))
+            given = expected[names[column]]
+            middle = float(np.exp(np.nanmedian(log_f[:, column])))
+            shape, seen, noise = mean_shape(record.shapes[own], _reference(given, at))
+            looks.append(Expected(middle, given.within, at[seen], shape))
+            shape_noise[column] = noise
+        contexts = {
+            name: np.array([column[windows == one][0] for one in range(count)])
+            for name, column in record.contexts.items()
+        }
+        scatter, memory = _noise(log_f, contexts, stated)
+        return cls(
+            modes=tuple(names),
+            time=named.time,
+            contexts=contexts,
+            log_f=log_f,
+            scatter=scatter,
+            memory=memory,
+            looks=tuple(looks),
+            shape_noise=shape_noise,
+            found=np.isfinite(log_f).mean(0),
+            doubtful=len(named.doubtful),
+            unnamed=int((named.mode < 0).sum()),
+            sha256=record.sha256,
+        )
+
+    def frequency(self) -> FloatArray:
+        """Median frequency of each mode [Hz], float[modes]."""
+        return np.array([look.near for look in self.looks])
+
+    def points(self) -> IntArray:
+        """Number of points at which each shape was measured, int[modes]."""
+        return np.array([len(look.at) for look in self.looks], dtype=np.int64)
+
+
+def mean_shape(
+    shapes: FloatArray, reference: FloatArray
+) -> tuple[FloatArray, IntArray, float]:
+    """The mean of measured shapes, each turned and scaled onto the others.
+
+    Args:
+        shapes: float[entries, points]; NaN where a point did not measure.
+        reference: what they are turned to first, float[points]; NaN where it says nothing.
+
+    Returns:
+        The mean, of length one, float[k]; the points where something was measured, int[k]; and
+        what 1 - MAC of the mean is by the scatter of the entries.
+
+    >>> mean, at, noise = mean_shape(np.array([[0.0, 2.0], [0.0, -2.0]]), np.array([1.0, 1.0]))
+    >>> mean.tolist(), at.tolist(), noise
+    ([0.0, 1.0], [0, 1], 0.0)
+    """
+    seen = np.flatnonzero(np.isfinite(shapes).any(0))
+    shapes, reference = shapes[:, seen], reference[seen]
+    some = np.isfinite(shapes).any(1)
+    shapes = shapes[some]
+    if not len(shapes) or not np.nan_to_num(shapes).any():
+        return np.zeros(0), seen[:0], 0.0
+    for _ in range(2):
+        turned = []
+        for one in shapes:
+            both = np.isfinite(one) & np.isfinite(reference)
+            length = float(one[both] @ one[both])
+            along = float(one[both] @ reference[both])
+            turned.append(one * (along / length if along and length else np.nan))
+        stacked = np.array(turned)
+        if not np.isfinite(stacked).any():
+            # Nothing of the reference is at these points: the first entry is as good.
+            reference = shapes[0]
+            continue
+        with np.errstate(invalid="ignore"):
+            mean = np.nansum(stacked, 0) / np.maximum(np.isfinite(stacked).sum(0), 1)
+        reference = np.where(np.isfinite(stacked).any(0), mean, np.nan)
+    mean = np.nan_to_num(reference)
+    mean = mean / np.linalg.norm(mean)
+    off = [
+        1.0 - mac(one[both], mean[both])
+        for one in shapes
+        if (both := np.isfinite(one)).any()
+    ]
+    return mean, seen, float(np.mean(off)) / max(len(off) - 1, 1) if len(off) > 1 else 0.0
+
+
+def _reference(given: Expected, at: IntArray) -> FloatArray:
+    """What is expected of a mode at the points of a record, float[points]; NaN where nothing."""
+    known = dict(zip(given.at.tolist(), given.shape.tolist(), strict=True))
+    return np.array([known.get(int(point), np.nan) for point in at])
+
+
+def _noise(
+    log_f: FloatArray, contexts: dict[str, FloatArray], stated: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Scatter and memory of the frequencies about what contexts do to them."""
+    windows, modes = log_f.shape
+    basis = [np.ones(windows)]
+    for column in contexts.values():
+        if np.isfinite(column).all() and np.ptp(column) > 0:
+            scaled = (column - column.mean()) / np.ptp(column)
+            basis += [scaled, scaled**2, np.abs(scaled)]
+    columns = np.column_stack(basis)
+    scatter, memory = np.zeros(modes), np.zeros(modes)
+    for mode in range(modes):
+        seen = np.isfinite(log_f[:, mode])
+        if seen.sum() < max(REPEATS, 2 * columns.shape[1]):
+            known = stated[mode]
+            scatter[mode] = known if np.isfinite(known) else UNKNOWN_SCATTER
+            continue
+        own = columns[seen]
+        amounts, *_ = np.linalg.lstsq(own, log_f[seen, mode], rcond=None)
+        left = log_f[seen, mode] - own @ amounts
+        freedom = max(1, seen.sum() - columns.shape[1])
+        scatter[mode] = float(np.sqrt((left**2).sum() / freedom))
+        follows = float(left[:-1] @ left[1:]) / max(float(left @ left), 1e-300)
+        memory[mode] = float(np.clip(follows, 0.0, MOST_MEMORY))
+    return np.maximum(scatter, LEAST_SCATTER), memory

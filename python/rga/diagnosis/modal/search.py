@@ -1,0 +1,137 @@
+"""The search for what is wrong of how a structure swings: forward, backward, and rivals."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.diagnosis.modal.candidates import ModalProspect, prospects
+from rga.diagnosis.modal.fit import ModalFit, fitted
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.findings.criteria import Criteria
+
+#: prospects that are fitted whatever their kind, and share of the best score below which a
+#: prospect is far behind
+FITTED, FAR = 8, 0.3
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class ModalFound:
+    """What a search ends with.
+
+    Attributes:
+        fit: the causes together.
+        log_odds: of each against leaving it out.
+        rivals: of each what could stand in its place, the nearest first, with how far behind it is
+            [log-odds].
+        first: prospects beside nothing, the best first.
+    """
+
+    fit: ModalFit
+    log_odds: tuple[float, ...]
+    rivals: tuple[tuple[tuple[ModalFit, float], ...], ...]
+    first: list[ModalProspect]
+
+
+def search(
+    likelihood: ModalLikelihood,
+    candidates: Sequence[Hypothesis],
+    criteria: Criteria,
+    progress: Progress,
+) -> ModalFound:
+    """Find the causes that the modes name."""
+    current = fitted(likelihood, [], [])
+    naming = criteria.naming
+    first: list[ModalProspect] = []
+    tried: list[list[ModalFit]] = []
+    for number in range(min(naming.most_causes, len(likelihood.readings.modes))):
+        words = "screening" if number == 0 else f"looking for cause {number + 1}"
+        promising = prospects(
+            likelihood,
+            candidates,
+            current.hypotheses,
+            current.z,
+            lambda done, words=words: progress(words, done),  # type: ignore[misc]
+        )
+        if not number:
+            first = promising
+        fits = [_beside(current, one) for one in worth_fitting(promising)]
+        best = max(fits, key=evidence, default=current)
+        if best.log_evidence - current.log_evidence < naming.log_odds:
+            break
+        tried.append(fits)
+        current = best
+        current = _pruned(current, naming.log_odds)
+    odds, rivals = [], []
+    for number in range(len(current.hypotheses)):
+        progress("weighing rivals", number / len(current.hypotheses))
+        odds.append(current.log_evidence - without(current, number).log_evidence)
+        rivals.append(tuple(_rivals(likelihood, current, number, first, candidates)))
+    progress("weighing rivals", 1.0)
+    return ModalFound(current, tuple(odds), tuple(rivals), first)
+
+
+def evidence(one: ModalFit) -> float:
+    return one.log_evidence
+
+
+def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
+    """The best prospects, and the best of every kind, less those far behind."""
+    kinds: dict[str, ModalProspect] = {}
+    for one in promising:
+        kinds.setdefault(one.hypothesis.name, one)
+    chosen = list(promising[:FITTED])
+    chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
+    best = promising[0].score if promising else 0.0
+    return [one for one in chosen if one.score > min(FAR * best, best - 30.0) or one.score > 0]
+
+
+def without(current: ModalFit, number: int) -> ModalFit:
+    """The fit anew without one of its hypotheses."""
+    others = [one for k, one in enumerate(current.hypotheses) if k != number]
+    return fitted(current.likelihood, others, np.delete(current.z, current.of(number)))
+
+
+def _beside(current: ModalFit, one: ModalProspect) -> ModalFit:
+    return fitted(
+        current.likelihood, [*current.hypotheses, one.hypothesis], [*current.z, *one.z]
+    )
+
+
+def _pruned(current: ModalFit, least: float) -> ModalFit:
+    """Take out causes that others have made needless."""
+    while current.hypotheses:
+        fits = [without(current, number) for number in range(len(current.hypotheses))]
+        best = max(fits, key=evidence)
+        if current.log_evidence - best.log_evidence >= least:
+            break
+        current = best
+    return current
+
+
+def _rivals(
+    likelihood: ModalLikelihood,
+    current: ModalFit,
+    number: int,
+    first: Sequence[ModalProspect],
+    candidates: Sequence[Hypothesis],
+) -> list[tuple[ModalFit, float]]:
+    """What could stand in the place of a cause, beside the others."""
+    others = [one for k, one in enumerate(current.hypotheses) if k != number]
+    z = np.delete(current.z, current.of(number))
+    promising = (
+        first
+        if not others
+        else prospects(likelihood, candidates, others, z, lambda done: None)
+    )
+    own = current.hypotheses[number]
+    found = []
+    for one in worth_fitting(promising):
+        if own.same_place(one.hypothesis):
+            continue
+        other = fitted(likelihood, [*others, one.hypothesis], [*z, *one.z])
+        if np.isfinite(other.log_evidence):
+            found.append((other, current.log_evidence - other.log_evidence))
+    return sorted(found, key=lambda pair: pair[1])

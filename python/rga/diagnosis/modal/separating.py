@@ -1,0 +1,53 @@
+"""What to measure to tell two explanations of the same modes apart."""
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.diagnosis.modal.fit import ModalFit
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+
+#: difference of a shape, over its largest motion, that an accelerometer is worth
+WORTH = 0.1
+#: kinds that a known mass or a static load tells from stiffness
+COMMON = frozenset(
+    {"elastic_modulus", "mass_factor", "added_mass", "clock_rate", "member_stiffness"}
+)
+AXES = ("x", "y", "z")
+
+
+def separating(likelihood: ModalLikelihood, one: ModalFit, other: ModalFit) -> str:
+    """In words: the point at which the shapes of two explanations differ most, or another test."""
+    advice = []
+    place = _place(likelihood, one, other)
+    if place is not None:
+        node, axis, mode, apart = place
+        advice.append(
+            f"an accelerometer at {node} along {axis}: in mode {mode} the two differ there by "
+            f"{apart:.0%} of its largest motion"
+        )
+    kinds = {fit.hypotheses[-1].name for fit in (one, other)}
+    if kinds <= COMMON and len(kinds) > 1:
+        advice.append("a parked truck of known mass, or a static test under a known load")
+    return "; or ".join(advice) or "no point of the structure tells them apart by its shapes"
+
+
+def _place(
+    likelihood: ModalLikelihood, one: ModalFit, other: ModalFit
+) -> tuple[str, str, str, float] | None:
+    """Node, axis and mode with the largest difference, and it."""
+    if one.prediction is None or other.prediction is None:
+        return None
+    nodes = list(likelihood.trials.model.nodes)
+    best: tuple[float, str, str, str] = (WORTH, "", "", "")
+    for mode, name in enumerate(likelihood.readings.modes):
+        first, second = (_scaled(fit.prediction.shapes[mode]) for fit in (one, other))  # type: ignore[union-attr]
+        second = second * np.sign(float((first * second).sum()) or 1.0)
+        apart = np.abs(first - second)
+        node, axis = np.unravel_index(int(apart.argmax()), apart.shape)
+        if apart[node, axis] > best[0]:
+            best = (float(apart[node, axis]), nodes[node], AXES[axis], name)
+    return (*best[1:], best[0]) if best[1] else None
+
+
+def _scaled(shape: FloatArray) -> FloatArray:
+    return np.asarray(shape / max(float(np.abs(shape).max()), 1e-300))

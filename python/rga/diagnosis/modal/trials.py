@@ -1,0 +1,304 @@
+"""What a model with effects predicts of the modes that were measured."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga import _core
+from rga.arrays import FloatArray, IntArray
+from rga.diagnosis.modal.readings import ModalReadings
+from rga.errors import InputError
+from rga.model.effect import Effect, Values, blend
+from rga.model.schema import Model
+from rga.model.structure import Structure
+from rga.simulation.modal.pairing import paired
+from rga.simulation.modal.structures import ModalStructures
+from rga.simulation.paths.response import refused
+
+#: structures that stand for those of all windows where a context drives them
+SUPPORTS = 7
+#: modes computed beyond the expected ones, so that none is missed in its place
+BEYOND = 4
+#: shares of its frequency, in those that a mode may well differ by, within which it is looked for
+REACH = 3.0
+#: modes that are looked at, at most, and predictions that are kept
+MOST, KEPT = 200, 256
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Modes as a model has them.
+
+    Attributes:
+        log_f: [ln Hz], float[windows, modes].
+        shapes: motion of all nodes along the axes in the middle of what the contexts were,
+            averaged over the windows, float[modes, nodes, 3].
+        number: of the computed mode that each is, there, int[modes].
+        mac: of each with the measured shape, float[modes]; NaN without shape.
+        doubtful: other pairings that are nearly as probable.
+    """
+
+    log_f: FloatArray
+    shapes: FloatArray
+    number: IntArray
+    mac: FloatArray
+    doubtful: int
+
+
+@dataclass(frozen=True)
+class _State:
+    """Modes under the contexts that stand for all, with the same effects acting."""
+
+    log_f: FloatArray
+    shapes: FloatArray
+    number: IntArray
+    mac: FloatArray
+    doubtful: int
+
+
+class ModalTrials:
+    """A model, to which effects are added in turn, under the contexts of measured windows.
+
+    The pairing of computed modes with measured ones is made anew for every trial.
+
+    Args:
+        model: with its effects.
+        readings: what was measured.
+
+    Raises:
+        InputError: a context that drives the structure was not measured; or as `ModalStructures`.
+        UnstableStructureError: the structure can move.
+    """
+
+    def __init__(self, model: Model, readings: ModalReadings) -> None:
+        self.model, self.readings = model, readings
+        points = list(model.points.values())
+        nodes = {name: number for number, name in enumerate(model.nodes)}
+        self._nodes = np.array([nodes[one.node] for one in points], dtype=np.int64)
+        axes = np.array([one.direction for one in points], dtype=float).reshape(-1, 3)
+        self._axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        structures = ModalStructures(model)
+        self._given = _contexts(model, structures.needed, readings)
+        chosen, self._weights = self._supports(structures.needed)
+        self._contexts: Values = {
+            name: column[chosen] for name, column in self._given.items()
+        } | {"time": readings.time[chosen]}
+        self._structures = structures.each_under(self._contexts)
+        self._values = structures.parameters(self._contexts)
+        self._middle = len(chosen) // 2
+        reach = [look.near * np.exp(REACH * look.within) for look in readings.looks]
+        self._reach = float(max(reach))
+        self._count = len(readings.modes) + BEYOND
+        self._known: dict[str, Prediction] = {}
+        self._near: _core.ModalReanalysis | None = None
+        self._near = self._reanalysis()
+
+    def predict(self, effects: Mapping[str, Effect]) -> Prediction:
+        """The modes with more effects.
+
+        Effects that begin late act in the windows from then on: windows in which the same ones act
+        have the same structure.
+
+        Args:
+            effects: by name; those that are no part of a structure or of a clock do nothing here.
+
+        Raises:
+            InputError: the effects cannot be simulated, or leave no mode for one that was
+                measured.
+        """
+        key = repr(effects)
+        if key not in self._known:
+            self._known[key] = self._predict(list(effects.values()))
+            if len(self._known) > KEPT:
+                del self._known[next(iter(self._known))]
+        return self._known[key]
+
+    def energies(self) -> tuple[FloatArray, FloatArray]:
+        """Shares of members in the modes: derivatives of ln f by logarithms of what they are.
+
+        Returns:
+            Of the stiffness of members, then of springs, float[modes, members + springs]; of the
+            masses of members, then of nodes, float[modes, members + nodes], without the model's
+            more effects.
+        """
+        structure = self._structures[self._middle]
+        found = self._state([])
+        squares, shapes, *_ = self._modes(structure)
+        strain, kinetic = _core.modal_energies(structure.arrays, structure.masses, shapes)
+        own = squares[found.number][:, None]
+        return 0.5 * strain[found.number] / own, -0.5 * kinetic[found.number]
+
+    def _supports(self, needed: set[str]) -> tuple[IntArray, FloatArray]:
+        """Windows that stand for all, and the share of each in every window.
+
+        Returns:
+            int[supports], and float[windows, supports].
+        """
+        windows = len(self.readings.time)
+        driven = [name for name in needed if np.ptp(self._given[name]) > 0]
+        if not driven:
+            return np.array([windows // 2]), np.ones((windows, 1))
+        # Along the context that says most of the frequencies; others as they are beside it.
+        column = max((self._given[name] for name in sorted(driven)), key=self._told)
+        order = np.argsort(column, kind="stable")
+        places = np.unique(np.linspace(0, windows - 1, min(SUPPORTS, windows)).round().astype(int))
+        chosen = order[places]
+        chosen = chosen[np.unique(column[chosen], return_index=True)[1]]
+        at = column[chosen]
+        weights = np.array([np.interp(column, at, one) for one in np.eye(len(chosen))]).T
+        return chosen, weights
+
+    def _told(self, column: FloatArray) -> float:
+        """How much a context says of the frequencies: sum of squared correlations."""
+        total = 0.0
+        for log_f in self.readings.log_f.T:
+            seen = np.isfinite(log_f)
+            if seen.sum() > 2 and np.ptp(column[seen]) > 0 and np.ptp(log_f[seen]) > 0:
+                total += float(np.corrcoef(column[seen], log_f[seen])[0, 1] ** 2)
+        return total
+
+    def _predict(self, effects: Sequence[Effect]) -> Prediction:
+        time = self.readings.time
+        late = [one for one in effects if one.onset is not None]
+        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
+        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
+        of_window = np.asarray(of_window).ravel()
+        log_f = np.empty((len(time), len(self.readings.modes)))
+        shares, states = [], []
+        for number, acting in enumerate(parts.T):
+            own = of_window == number
+            some = iter(acting)
+            now = [
+                one if one.onset is None else _partly(one, float(next(some))) for one in effects
+            ]
+            state = self._state([one for one in now if one is not None])
+            log_f[own] = self._weights[own] @ state.log_f
+            shares.append(float(own.mean()))
+            states.append(state)
+        first = states[int(np.argmax(shares))]
+        shapes = np.zeros_like(first.shapes)
+        for share, state in zip(shares, states, strict=True):
+            along = np.einsum("mna,mna->m", state.shapes, first.shapes)
+            shapes += share * np.sign(along)[:, None, None] * state.shapes
+        return Prediction(
+            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states)
+        )
+
+    def _state(self, effects: Sequence[Effect]) -> _State:
+        values: list[Values] = []
+        rows = len(self._structures)
+        for effect in effects:
+            own = effect.values(self._contexts, rows)
+            if effect.overrides("change_values"):
+                effect.change_values({**self._values, "": own}, own, self._contexts["time"])
+            values.append(own)
+        log_f = []
+        middle: _State | None = None
+        for row, structure in enumerate(self._structures):
+            changed = structure
+            if any(one.structural for one in effects):
+                changed = structure.copy()
+                for effect, own in zip(effects, values, strict=True):
+                    if effect.structural:
+                        effect.change_structure(changed, {k: float(c[row]) for k, c in own.items()})
+                if not changed.linear:
+                    raise InputError(
+                        "an effect leaves no natural frequency of its own", "modes", "leave it out"
+                    )
+            state = self._paired(changed)
+            factor = [
+                float(effect.frequency_factor(own)[row])
+                for effect, own in zip(effects, values, strict=True)
+                if effect.overrides("frequency_factor")
+            ]
+            log_f.append(state.log_f + np.log(factor).sum())
+            if row == self._middle:
+                middle = state
+        assert middle is not None  # one of the rows is the middle one
+        return _State(np.array(log_f), middle.shapes, middle.number, middle.mac, middle.doubtful)
+
+    def _paired(self, structure: Structure) -> _State:
+        squares, shapes, *_ = self._modes(structure)
+        moving = shapes[:, : len(self.model.nodes), :3]
+        at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
+        frequencies = np.sqrt(squares) / (2 * np.pi)
+        pairing = paired(self.readings.looks, frequencies, at_points)
+        if (pairing.computed < 0).any():
+            lacking = self.readings.modes[int(np.argmin(pairing.computed))]
+            raise InputError(
+                f"no computed mode is left for {lacking!r}", "modes", "state more masses"
+            )
+        number = pairing.computed
+        return _State(
+            np.log(frequencies[number]),
+            moving[number],
+            number,
+            pairing.mac[np.arange(len(number)), number],
+            len(pairing.others),
+        )
+
+    def at_points(self, shapes: FloatArray) -> FloatArray:
+        """Motion of shapes float[modes, nodes, 3] at the points, float[modes, points]."""
+        return np.einsum("mpk,pk->mp", shapes[:, self._nodes], self._axes)
+
+    def _modes(self, structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Modes up to where the measured ones may be."""
+        while True:
+            try:
+                if self._near is None:
+                    found = _core.modes(structure.arrays, structure.masses, self._count)
+                else:
+                    found = self._near.modes(structure.arrays, structure.masses, self._count)
+            except (_core.UnstableStructure, _core.InvalidInput) as error:
+                raise refused(structure, error) from None
+            last = np.sqrt(found[0][-1]) / (2 * np.pi) if len(found[0]) else np.inf
+            if len(found[0]) < self._count or last > self._reach or self._count >= MOST:
+                return found
+            self._count = min(2 * self._count, MOST)
+            if self._near is not None:
+                self._near = self._reanalysis()
+
+    def _reanalysis(self) -> _core.ModalReanalysis:
+        structure = self._structures[self._middle]
+        self._near = None
+        self._modes(structure)
+        try:
+            return _core.ModalReanalysis(structure.arrays, structure.masses, self._count)
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(structure, error) from None
+
+
+def _partly(effect: Effect, weight: float) -> Effect | None:
+    """An effect that acts as it does with a share of it; None where it does not yet."""
+    if weight <= 0.0:
+        return None
+    always = effect.model_copy(update={"onset": None, "profile": "step", "end": None})
+    if weight >= 1.0:
+        return always
+    values = {}
+    for name, parameter in effect.parameters().items():
+        own = getattr(effect, name)
+        if parameter.neutral is not None and isinstance(own, float):
+            values[name] = float(blend(np.array([own]), parameter.neutral, np.array([weight]))[0])
+    return always.with_values(values)
+
+
+def _contexts(model: Model, needed: set[str], readings: ModalReadings) -> Values:
+    """Contexts of the windows, float[windows] each; what nobody needs lies in its middle."""
+    found: Values = {}
+    for name, variable in model.context.items():
+        column = readings.contexts.get(name)
+        if name in needed:
+            if column is None or not np.isfinite(column).any():
+                raise InputError(
+                    f"context {name!r}, which drives the structure, is not in the modal record",
+                    f"model {model.name!r}",
+                    f"give a column {name} beside the frequencies",
+                )
+            seen = np.isfinite(column)
+            time = readings.time
+            found[name] = np.interp(time, time[seen], column[seen])
+        else:
+            found[name] = np.full(len(readings.time), sum(variable.range) / 2)
+    return found

@@ -1,0 +1,48 @@
+//! Modes of structures near one whose modes are known.
+//!
+//! What does not depend on stiffness and mass is done once: in which order unknowns are eliminated.
+//! The space in which modes are sought starts with what K^-1 M makes of the known ones, so that few
+//! steps lead to the modes of a structure near by (block inverse iteration with all its iterates
+//! kept; Parlett, The Symmetric Eigenvalue Problem, 1980, chapters 13 and 14). They are as exact,
+//! and counted, as those of a structure by itself.
+
+use super::motion::Motion;
+use super::{BEYOND, Modes, lowest};
+use crate::error::Result;
+use crate::input::{Masses, Structure};
+use crate::sparse::lanczos::Lanczos;
+use crate::validate::masses::check_masses;
+use crate::validate::structure::check_structure;
+
+/// A structure that swings, with its modes.
+pub struct ModalReanalysis {
+    motion: Motion,
+    vectors: Vec<Vec<f64>>,
+}
+
+impl ModalReanalysis {
+    /// `count` modes are known of it.
+    pub fn new(structure: &Structure, masses: &Masses, count: usize) -> Result<Self> {
+        check_structure(structure)?;
+        check_masses(structure, masses)?;
+        let motion = Motion::new(structure, masses)?;
+        let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
+        Ok(Self {
+            motion,
+            vectors: found.vectors,
+        })
+    }
+
+    /// The `count` lowest modes of another structure, or all where there are fewer.
+    pub fn modes(&self, other: &Structure, masses: &Masses, count: usize) -> Result<Modes> {
+        check_structure(other)?;
+        check_masses(other, masses)?;
+        let Some(motion) = self.motion.near(other, masses)? else {
+            let motion = Motion::new(other, masses)?;
+            let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
+            return Ok(motion.modes(&found, count));
+        };
+        let found = lowest(&motion, count, 0, Lanczos::near(&motion, &self.vectors)?)?;
+        Ok(motion.modes(&found, count))
+    }
+}

@@ -1,0 +1,155 @@
+//! Natural frequencies and mode shapes: functions, and the class `ModalReanalysis`.
+
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rga_core::Modes;
+
+use crate::exceptions::to_python;
+use crate::read::{read_masses, read_structure};
+
+type Vector<'py> = Bound<'py, PyArray1<f64>>;
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+/// Eigenvalues, shapes, participation, and the mass that moves.
+type Found<'py> = (
+    Vector<'py>,
+    Bound<'py, PyArray3<f64>>,
+    Matrix<'py>,
+    Vector<'py>,
+);
+
+/// Natural frequencies and mode shapes of a structure, the lowest first.
+///
+/// Masses move with the shapes in which members deform (consistent), bars along all three axes;
+/// what has no mass makes no mode. That none is missed is proved by a count (Sylvester's law).
+///
+/// Parameters
+/// ----------
+/// structure : as for `respond`, with n nodes and m members
+/// masses : line f64[m] along members [kg/m]; section f64[m, 3], of the section about the local
+///     axes, per length [kg m]; nodal f64[n, 6] at the nodes [kg, kg m2]
+/// count : of modes that are wanted
+///
+/// Returns
+/// -------
+/// f64[c], squares of the circular frequencies [rad2/s2]; f64[c, n, 6], shapes with a modal mass
+/// of 1 kg, whose largest motion is positive; f64[c, 3], roots of their effective modal masses along
+/// the axes [kg^0.5]; f64[3], the mass that moves along each axis [kg]. There may be fewer modes
+/// than are wanted.
+///
+/// Raises
+/// ------
+/// InvalidInput, UnstableStructure
+#[pyfunction]
+pub(crate) fn modes<'py>(
+    py: Python<'py>,
+    structure: &Bound<'py, PyDict>,
+    masses: &Bound<'py, PyDict>,
+    count: usize,
+) -> PyResult<Found<'py>> {
+    read_structure!(model from structure);
+    read_masses!(weights from masses);
+    let found = py
+        .detach(|| rga_core::modes(&model, &weights, count))
+        .map_err(|error| to_python(py, error))?;
+    given(py, &found, model.coordinates.len())
+}
+
+fn given<'py>(py: Python<'py>, found: &Modes, nodes: usize) -> PyResult<Found<'py>> {
+    let shape = [found.eigenvalues.len(), nodes, 6];
+    Ok((
+        PyArray1::from_slice(py, &found.eigenvalues),
+        PyArray1::from_slice(py, &found.shapes).reshape(shape)?,
+        PyArray1::from_slice(py, &found.participation).reshape([shape[0], 3])?,
+        PyArray1::from_slice(py, &found.mass),
+    ))
+}
+
+/// Energies of elements in modes, by which eigenvalues change.
+///
+/// The derivative of an eigenvalue by the logarithm of the stiffness of an element is its strain
+/// energy; that by the logarithm of a mass is the eigenvalue times its kinetic energy, taken off
+/// (Fox and Kapoor, Rates of change of eigenvalues and eigenvectors, AIAA Journal 6, 1968).
+///
+/// Parameters
+/// ----------
+/// structure, masses : as for `modes`, with n nodes, m members and s springs
+/// shapes : f64[c, n, 6], with a modal mass of 1 kg
+///
+/// Returns
+/// -------
+/// f64[c, m + s], twice the strain energy of members, then of springs [J]; f64[c, m + n], twice the
+/// kinetic energy at unit circular frequency of members, then of what is on nodes [-].
+///
+/// Raises
+/// ------
+/// InvalidInput
+#[pyfunction]
+pub(crate) fn modal_energies<'py>(
+    py: Python<'py>,
+    structure: &Bound<'py, PyDict>,
+    masses: &Bound<'py, PyDict>,
+    shapes: PyReadonlyArray3<'py, f64>,
+) -> PyResult<(Matrix<'py>, Matrix<'py>)> {
+    read_structure!(model from structure);
+    read_masses!(weights from masses);
+    let count = shapes.as_array().shape()[0];
+    let motions = shapes.as_slice()?;
+    let found = py
+        .detach(|| rga_core::modal_energies(&model, &weights, motions))
+        .map_err(|error| to_python(py, error))?;
+    let of_modes = |energies: Vec<f64>| {
+        let width = energies.len().checked_div(count).unwrap_or(0);
+        PyArray1::from_vec(py, energies).reshape([count, width])
+    };
+    Ok((of_modes(found.strain)?, of_modes(found.kinetic)?))
+}
+
+/// A structure whose modes are known: those of structures near it are found in few steps.
+///
+/// They are as exact as by `modes`, and counted as well. A structure whose unknowns are coupled
+/// otherwise is solved by itself.
+///
+/// Parameters
+/// ----------
+/// structure, masses : as for `modes`
+/// count : of modes that are known
+///
+/// Raises
+/// ------
+/// InvalidInput, UnstableStructure
+#[pyclass(module = "rga._core", frozen)]
+pub struct ModalReanalysis(rga_core::ModalReanalysis);
+
+#[pymethods]
+impl ModalReanalysis {
+    #[new]
+    fn new(
+        structure: &Bound<'_, PyDict>,
+        masses: &Bound<'_, PyDict>,
+        count: usize,
+    ) -> PyResult<Self> {
+        let py = structure.py();
+        read_structure!(model from structure);
+        read_masses!(weights from masses);
+        py.detach(|| rga_core::ModalReanalysis::new(&model, &weights, count))
+            .map(Self)
+            .map_err(|error| to_python(py, error))
+    }
+
+    /// Modes of a structure near this one, as by `modes`, with the same errors.
+    fn modes<'py>(
+        &self,
+        py: Python<'py>,
+        structure: &Bound<'py, PyDict>,
+        masses: &Bound<'py, PyDict>,
+        count: usize,
+    ) -> PyResult<Found<'py>> {
+        read_structure!(model from structure);
+        read_masses!(weights from masses);
+        let found = py
+            .detach(|| self.0.modes(&model, &weights, count))
+            .map_err(|error| to_python(py, error))?;
+        given(py, &found, model.coordinates.len())
+    }
+}
