@@ -11,6 +11,11 @@ DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 def dense_modes(model: Model) -> FloatArray:
     """All natural frequencies [Hz] of bars and Euler-Bernoulli beams without releases."""
+    return dense_mode_shapes(model, None)[0]
+
+
+def dense_mode_shapes(model: Model, count: int | None) -> tuple[FloatArray, FloatArray]:
+    """The lowest of these, or all, with their shapes: float[modes], float[modes, dofs]."""
     numbers = {name: 6 * at for at, name in enumerate(model.nodes)}
     size = 6 * len(numbers)
     stiffness, mass = np.zeros((size, size)), np.zeros((size, size))
@@ -35,9 +40,11 @@ def dense_modes(model: Model) -> FloatArray:
     held += [at + dof for at in numbers.values() for dof in out_of_plane]
     free = np.setdiff1d(np.flatnonzero(stiffness.diagonal() > 0), held)
     # 1 / w^2 and not w^2: what has no mass is at zero, not beyond all bounds.
-    largest = eigh(mass[np.ix_(free, free)], stiffness[np.ix_(free, free)], eigvals_only=True)
-    largest = largest[largest > 1e-9 * largest.max()][::-1]
-    return np.asarray(1 / np.sqrt(largest) / (2 * np.pi))
+    largest, vectors = eigh(mass[np.ix_(free, free)], stiffness[np.ix_(free, free)])
+    heavy = np.flatnonzero(largest > 1e-9 * largest.max())[::-1][:count]
+    shapes = np.zeros((len(heavy), size))
+    shapes[:, free] = vectors[:, heavy].T
+    return np.asarray(1 / np.sqrt(largest[heavy]) / (2 * np.pi)), shapes
 
 
 def _member(model: Model, member: object) -> tuple[FloatArray, FloatArray]:

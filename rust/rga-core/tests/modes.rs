@@ -3,7 +3,10 @@
 mod common;
 
 use common::*;
-use rga_core::{Array, Error, Masses, Modes, Result, modes};
+use rga_core::{
+    Array, Error, Masses, ModalEnergies, ModalReanalysis, Modes, Result, Structure, modal_energies,
+    modes,
+};
 
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 const LINE: f64 = 60.0;
@@ -11,6 +14,44 @@ const L: f64 = 4.0;
 
 /// Modes of a case with `line` kg/m along every member and masses on nodes.
 fn found(case: &Case, line: f64, nodal: &[(usize, [f64; 6])], count: usize) -> Result<Modes> {
+    with_masses(case, line, nodal, |structure, masses| {
+        modes(structure, masses, count)
+    })
+}
+
+/// The same of a case near another.
+fn near(
+    known: &Case,
+    case: &Case,
+    line: f64,
+    nodal: &[(usize, [f64; 6])],
+    count: usize,
+) -> Result<Modes> {
+    let known = with_masses(known, line, nodal, |structure, masses| {
+        ModalReanalysis::new(structure, masses, count)
+    })?;
+    with_masses(case, line, nodal, |structure, masses| {
+        known.modes(structure, masses, count)
+    })
+}
+
+fn energies(
+    case: &Case,
+    line: f64,
+    nodal: &[(usize, [f64; 6])],
+    shapes: &[f64],
+) -> Result<ModalEnergies> {
+    with_masses(case, line, nodal, |structure, masses| {
+        modal_energies(structure, masses, shapes)
+    })
+}
+
+fn with_masses<T>(
+    case: &Case,
+    line: f64,
+    nodal: &[(usize, [f64; 6])],
+    does: impl FnOnce(&Structure, &Masses) -> T,
+) -> T {
     let (n, m) = (case.nodes.len(), case.ends.len());
     let (line, section) = (vec![line; m], vec![0.0; 3 * m]);
     let mut masses = vec![0.0; 6 * n];
@@ -23,7 +64,7 @@ fn found(case: &Case, line: f64, nodal: &[(usize, [f64; 6])], count: usize) -> R
         section: Array::new(&section, &sections),
         nodal: Array::new(&masses, &nodes),
     };
-    case.lend(&[], |structure, _, _| modes(structure, &masses, count))
+    case.lend(&[], |structure, _, _| does(structure, &masses))
 }
 
 fn mass(mass: f64) -> [f64; 6] {
@@ -187,4 +228,61 @@ fn masses_that_are_none_are_refused() {
     let free = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
     let refused = found(&free, LINE, &[], 1);
     assert!(matches!(refused, Err(Error::UnstableStructure { .. })));
+}
+
+/// A frame of two bays whose members differ, and masses on its nodes.
+fn two_bays(soft: f64) -> Case {
+    let nodes = [
+        [0.0, 0.0, 0.0],
+        [4.0, 0.5, 0.0],
+        [8.0, 0.0, 0.3],
+        [0.0, 0.0, 3.0],
+        [4.0, 0.0, 3.2],
+        [8.0, 0.4, 3.0],
+    ];
+    let ends = [[0, 3], [1, 4], [2, 5], [3, 4], [4, 5], [0, 4], [1, 5]];
+    let members: Vec<([i64; 2], bool)> = ends.map(|ends| (ends, true)).to_vec();
+    let mut case = Case::new(&nodes, &members);
+    case.springs.push(([4, -1], 0, 2e5 * soft));
+    case.fix(0, &ALL).fix(1, &ALL).fix(2, &ALL)
+}
+
+#[test]
+fn modes_near_a_structure_are_those_of_the_other() -> Result<()> {
+    let masses = [(3, mass(800.0)), (5, mass(500.0))];
+    for soft in [1.0, 0.5, 20.0, 1e4] {
+        let alone = found(&two_bays(soft), LINE, &masses, 6)?;
+        let near = near(&two_bays(1.0), &two_bays(soft), LINE, &masses, 6)?;
+        for (one, other) in near.eigenvalues.iter().zip(&alone.eigenvalues) {
+            close(*one, *other);
+        }
+        let apart = near.shapes.iter().zip(&alone.shapes);
+        assert!(
+            apart
+                .map(|(one, other)| (one - other).abs())
+                .fold(0.0, f64::max)
+                < 1e-7
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn energies_are_the_slopes_of_eigenvalues() -> Result<()> {
+    let (step, masses) = (1e-4_f64, [(3, mass(800.0)), (5, mass(500.0))]);
+    let middle = found(&two_bays(1.0), LINE, &masses, 4)?;
+    let [below, above] = [-step, step].map(|step| found(&two_bays(step.exp()), LINE, &masses, 4));
+    let energies = energies(&two_bays(1.0), LINE, &masses, &middle.shapes)?;
+    let (below, above) = (below?, above?);
+    for mode in 0..4 {
+        let slope = (above.eigenvalues[mode] - below.eigenvalues[mode]) / (2.0 * step);
+        // Seven members, and the spring behind them.
+        let own = energies.strain[8 * mode + 7];
+        assert!((slope - own).abs() < 1e-6 * middle.eigenvalues[mode]);
+        let kinetic: f64 = energies.kinetic[13 * mode..13 * (mode + 1)].iter().sum();
+        close(kinetic, 1.0);
+        let strain: f64 = energies.strain[8 * mode..8 * (mode + 1)].iter().sum();
+        close(strain, middle.eigenvalues[mode]);
+    }
+    Ok(())
 }

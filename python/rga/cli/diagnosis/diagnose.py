@@ -55,9 +55,7 @@ def diagnose(
         )
     if modal is not None:
         if mapping is not None:
-            raise InputError(
-                "a modal record is read without a mapping", "--import", "leave it out"
-            )
+            raise InputError("a modal record is read without a mapping", "--import", "leave it out")
         _diagnose_modes(model, modal, output, criteria, seed, json, pdf)
     else:
         _diagnose_record(model, record or [], output, mapping, criteria, seed, json, pdf)

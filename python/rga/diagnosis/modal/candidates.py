@@ -1,7 +1,7 @@
 """What could be wrong of how a structure swings: hypotheses, and which are worth a fit."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.fit import predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.search.hypothesis import LATE, Hypothesis, hypotheses_of
+from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
 from rga.model.schema import Model
 
@@ -18,6 +18,8 @@ from rga.model.schema import Model
 EXPLAINING, MOVING = 12, 6
 #: beginnings that are distinguished, and windows that must lie on either side of one
 BEGINNINGS, EITHER = 30, 5
+#: prospects that are simulated at the size that they promise, and the farthest of these [prior sd]
+FARTHER, FARTHEST = 40, 4.0
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,7 @@ def prospects(
             largest = max(largest, float(np.linalg.norm(change)))
             prior = float(np.square(trial).sum())
             score = _score(left, rest, change, prior) + candidate.log_prior
+            score -= likelihood.freedom(there)
             options = [ModalProspect(candidate, trial, score, largest)]
             moved = (there.log_f - base.log_f).mean(0)
             later = steps.best(moved, prior)
@@ -106,8 +109,38 @@ def prospects(
             several.append(
                 ModalProspect(best.hypothesis, best.z, best.score, max(largest, best.largest))
             )
+    several.sort(key=lambda one: -one.score)
+    nearest = [_farther(likelihood, one, (found, z), left) for one in several[:FARTHER]]
     progress(1.0)
-    return sorted(several, key=lambda one: -one.score)
+    return sorted([*nearest, *several[FARTHER:]], key=lambda one: -one.score)
+
+
+def _farther(
+    likelihood: ModalLikelihood,
+    one: ModalProspect,
+    beside: tuple[Sequence[Hypothesis], FloatArray],
+    left: FloatArray,
+) -> ModalProspect:
+    """The same at the size that its trial promises, where that is simulated to fit better."""
+    if len(one.z) != 1 or one.z[0] == 0.0:
+        return one
+    found, z = beside
+    there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, *one.z]))
+    if there is None:
+        return one
+    change = left - likelihood.residual(there)
+    size = float(change @ change)
+    if size == 0.0:
+        return one
+    times = float(change @ left) / size
+    farther = float(np.clip(one.z[0] * times, -FARTHEST, FARTHEST))
+    there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, farther]))
+    if there is None:
+        return one
+    rest = likelihood.residual(there)
+    score = _score(left, rest, left - rest, farther**2) + one.hypothesis.log_prior
+    score -= likelihood.freedom(there)
+    return replace(one, z=(farther,), score=score) if score > one.score else one
 
 
 def _score(left: FloatArray, rest: FloatArray, change: FloatArray, prior: float) -> float:

@@ -29,7 +29,7 @@ class LeftOutModes:
 
 def squares(likelihood: ModalLikelihood, prediction: Prediction) -> FloatArray:
     """Squared deviations of the frequencies, over what noise and model may be off, float[modes]."""
-    return np.asarray((likelihood.mean_off(prediction) / likelihood.mean_spread()) ** 2)
+    return np.asarray((likelihood.mean_off(prediction) / likelihood.mean_spread(prediction)) ** 2)
 
 
 def left_out_modes(likelihood: ModalLikelihood, fit: ModalFit) -> LeftOutModes:
@@ -49,7 +49,7 @@ def left_out_modes(likelihood: ModalLikelihood, fit: ModalFit) -> LeftOutModes:
 def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
     """In words: modes whose frequency or shape a prediction does not have."""
     words = []
-    off, spread = likelihood.mean_off(prediction), likelihood.mean_spread()
+    off, spread = likelihood.mean_off(prediction), likelihood.mean_spread(prediction)
     for mode, name in enumerate(likelihood.readings.modes):
         if abs(off[mode]) > OFF * spread[mode]:
             words.append(
@@ -59,7 +59,8 @@ def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
         apart = likelihood.shape_off(mode, prediction)
         if float(apart @ apart) > (SHAPE_OFF * likelihood.shape_spread(mode)) ** 2:
             words.append(
-                f"the shape of mode {name} is not the simulated one (MAC {prediction.mac[mode]:.2f})"
+                f"the shape of mode {name} is not the simulated one "
+                f"(MAC {prediction.mac[mode]:.2f})"
             )
     if prediction.doubtful:
         words.append(

@@ -45,6 +45,12 @@ class ModalFit:
     log_evidence: float
 
     @property
+    def likelihood_loss(self) -> float:
+        """Loss of the data alone, whatever is known of parameters and places beforehand."""
+        freedom = 0.0 if self.prediction is None else self.likelihood.freedom(self.prediction)
+        return 0.5 * float(self.residual @ self.residual) + freedom
+
+    @property
     def information(self) -> FloatArray:
         """Of z, prior and data together, float[parameters, parameters]."""
         return np.asarray(self.signatures @ self.signatures.T + np.eye(len(self.z)))
@@ -119,10 +125,14 @@ def _signatures(
 ) -> FloatArray | None:
     columns = np.zeros((len(z), len(residual)))
     for number, along in enumerate(np.eye(len(z))):
-        ahead = predicted(likelihood, hypotheses, z + STEP * along)
-        if ahead is None:
+        # At the edge of what can be simulated there is but one side.
+        for step in (STEP, -STEP):
+            beside = predicted(likelihood, hypotheses, z + step * along)
+            if beside is not None:
+                columns[number] = (residual - likelihood.residual(beside)) / step
+                break
+        else:
             return None
-        columns[number] = (residual - likelihood.residual(ahead)) / STEP
     return columns
 
 
@@ -140,6 +150,8 @@ def _weighed(
     log_evidence = 0.5 * (float(nothing @ nothing) - loss)
     log_evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
     log_evidence += sum(one.log_prior for one in hypotheses)
+    if prediction is not None:
+        log_evidence -= likelihood.freedom(prediction)
     return ModalFit(
         likelihood, tuple(hypotheses), z, prediction, residual, signatures, log_evidence
     )

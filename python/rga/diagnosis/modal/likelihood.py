@@ -5,6 +5,7 @@ model makes of the mode in all windows. A measured shape is off by what noise an
 right in everything else make of 1 - MAC.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,9 @@ from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.simulation.modal.pairing import SHAPE_ERROR
 
+#: error that a model makes of what a cause changes of a frequency, as a share of the change:
+#: members as built and joints that it idealises leave about as much
+CHANGE_ERROR = 0.1
 #: error that a model makes of a frequency when it is right in everything that one can name, as a
 #: share of it: Georgia Tech's footbridge and others leave 1 to 2 %
 MODEL_ERROR = 0.01
@@ -66,6 +70,7 @@ class ModalLikelihood:
         count = len(self.readings.modes)
         self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
         noise = zip(self.readings.scatter, self.readings.memory, strict=True)
+        self._nothing = trials.predict({})
         self._series = [
             _Series.of(np.isfinite(log_f), float(scatter), float(memory), level)
             for log_f, (scatter, memory) in zip(self.readings.log_f.T, noise, strict=True)
@@ -82,19 +87,36 @@ class ModalLikelihood:
         return ModalLikelihood(self.trials, level, self.hidden)
 
     def residual(self, prediction: Prediction) -> FloatArray:
-        """What a prediction misses, whitened: its square is that under the covariance."""
+        """What a prediction misses, whitened: its square is that under the covariance.
+
+        The model errs in every mode by a share of what the effects of the prediction change.
+        """
         off = self.frequencies_off(prediction)
-        parts = [
-            series.whiten(off[:, mode])
-            for mode, series in enumerate(self._series)
-            if not self.hidden[mode]
-        ]
+        parts = []
+        for mode, white in self._doubts(prediction):
+            left = self._series[mode].whiten(off[:, mode])
+            square = float(white @ white)
+            if square > 0.0:
+                along = float(white @ left) / square
+                left = left - (1.0 - 1.0 / np.sqrt(1.0 + square)) * along * white
+            parts.append(left)
         parts += [
             self.shape_off(mode, prediction) / self.shape_spread(mode)
             for mode in range(len(self._series))
             if not self.hidden[mode]
         ]
         return np.concatenate(parts)
+
+    def freedom(self, prediction: Prediction) -> float:
+        """What the errors of the changes cost of the log evidence."""
+        return sum(0.5 * float(np.log1p(white @ white)) for _, white in self._doubts(prediction))
+
+    def _doubts(self, prediction: Prediction) -> Iterator[tuple[int, FloatArray]]:
+        """Modes with a standard deviation of what their changes may be off, whitened."""
+        change = CHANGE_ERROR * (prediction.log_f - self._nothing.log_f)
+        for mode, series in enumerate(self._series):
+            if not self.hidden[mode]:
+                yield mode, series.whiten(change[:, mode])
 
     def of_steady(self, changes: FloatArray) -> FloatArray:
         """Whitened changes of ln f that are the same in all windows, float[k, modes]: float[k, n].
@@ -136,11 +158,12 @@ class ModalLikelihood:
         off = self.readings.log_f - prediction.log_f
         return np.asarray(np.nanmean(off, axis=0))
 
-    def mean_spread(self) -> FloatArray:
-        """Standard deviation of that, the error of the model with it, float[modes]."""
+    def mean_spread(self, prediction: Prediction) -> FloatArray:
+        """Standard deviation of that, the errors of the model with it, float[modes]."""
         spreads = []
+        change = CHANGE_ERROR * (prediction.log_f - self._nothing.log_f).mean(0)
         for series, scatter in zip(self._series, self.readings.scatter, strict=True):
             memory = float(series.memory.max(initial=0.0))
             count = max(1.0, series.seen.sum() * (1.0 - memory) / (1.0 + memory))
             spreads.append(np.hypot(self.level, scatter / np.sqrt(count)))
-        return np.array(spreads)
+        return np.hypot(spreads, change)

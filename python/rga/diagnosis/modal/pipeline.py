@@ -87,9 +87,7 @@ def _diagnosed(
 ) -> Findings:
     readings = ModalReadings.of(model, record)
     likelihood = ModalLikelihood(ModalTrials(model, readings))
-    found = search(
-        likelihood, modal_hypotheses(model, list(record.contexts)), criteria, progress
-    )
+    found = search(likelihood, modal_hypotheses(model, list(record.contexts)), criteria, progress)
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
@@ -108,8 +106,9 @@ def _diagnosed(
         gap=_gap(model, likelihood, (nothing, after), left_out.before, left_out.after),
         causes=_causes(likelihood, found, effects, criteria),
         unidentifiable=_unidentifiable(found.first, criteria),
-        unexplained=Unexplained(share=_share_left(likelihood, nothing, after),
-                                looks_like="; ".join(doubts)),
+        unexplained=Unexplained(
+            share=_share_left(likelihood, nothing, after), looks_like="; ".join(doubts)
+        ),
         explanations=_explanations(likelihood, found, criteria),
         groups=_groups(model, likelihood, nothing, after),
         warnings=_warnings(model, readings),
@@ -195,9 +194,7 @@ def _change(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> FloatArr
     return np.asarray(likelihood.residual(without) - fit.residual)
 
 
-def _sizes(
-    likelihood: ModalLikelihood, found: ModalFound, number: int
-) -> tuple[float, float]:
+def _sizes(likelihood: ModalLikelihood, found: ModalFound, number: int) -> tuple[float, float]:
     """d' of a cause, and d' after projecting off its nearest rival."""
     own = _change(likelihood, found.fit, number)
     size = float(np.linalg.norm(own))
@@ -220,7 +217,9 @@ def _why(likelihood: ModalLikelihood, found: ModalFound, number: int) -> str:
     moved = np.expm1((after.log_f - without.log_f)[-1])
     most = np.argsort(-np.abs(moved))[:5]
     names = likelihood.readings.modes
-    shown = [f"{names[k]} ({moved[k]:+.1%})" for k in most if abs(moved[k]) > 0.1 * abs(moved).max()]
+    shown = [
+        f"{names[k]} ({moved[k]:+.1%})" for k in most if abs(moved[k]) > 0.1 * abs(moved).max()
+    ]
     return f"it moves {', '.join(shown)}"
 
 

@@ -18,6 +18,12 @@ UNKNOWN_SCATTER = 0.01
 LEAST_SCATTER = 2e-4
 #: windows that show a scatter by themselves
 REPEATS = 8
+#: rounds in which shapes, of which each may lack points, are scaled onto their mean
+ROUNDS = 20
+#: median size of a normal variable, in its standard deviations
+NORMAL = 0.6744897501960817
+#: usual sizes beyond which a step is drawn in
+FAR_OUT = 3.0
 #: most that one window says of the next
 MOST_MEMORY = 0.95
 
@@ -120,9 +126,7 @@ class ModalReadings:
         return np.array([len(look.at) for look in self.looks], dtype=np.int64)
 
 
-def mean_shape(
-    shapes: FloatArray, reference: FloatArray
-) -> tuple[FloatArray, IntArray, float]:
+def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, IntArray, float]:
     """The mean of measured shapes, each turned and scaled onto the others.
 
     Args:
@@ -143,7 +147,7 @@ def mean_shape(
     shapes = shapes[some]
     if not len(shapes) or not np.nan_to_num(shapes).any():
         return np.zeros(0), seen[:0], 0.0
-    for _ in range(2):
+    for _ in range(ROUNDS):
         turned = []
         for one in shapes:
             both = np.isfinite(one) & np.isfinite(reference)
@@ -160,11 +164,7 @@ def mean_shape(
         reference = np.where(np.isfinite(stacked).any(0), mean, np.nan)
     mean = np.nan_to_num(reference)
     mean = mean / np.linalg.norm(mean)
-    off = [
-        1.0 - mac(one[both], mean[both])
-        for one in shapes
-        if (both := np.isfinite(one)).any()
-    ]
+    off = [1.0 - mac(one[both], mean[both]) for one in shapes if (both := np.isfinite(one)).any()]
     return mean, seen, float(np.mean(off)) / max(len(off) - 1, 1) if len(off) > 1 else 0.0
 
 
@@ -186,6 +186,7 @@ def _noise(
             basis += [scaled, scaled**2, np.abs(scaled)]
     columns = np.column_stack(basis)
     scatter, memory = np.zeros(modes), np.zeros(modes)
+    steps = np.full((modes, 2), np.nan)
     for mode in range(modes):
         seen = np.isfinite(log_f[:, mode])
         if seen.sum() < max(REPEATS, 2 * columns.shape[1]):
@@ -195,8 +196,20 @@ def _noise(
         own = columns[seen]
         amounts, *_ = np.linalg.lstsq(own, log_f[seen, mode], rcond=None)
         left = log_f[seen, mode] - own @ amounts
-        freedom = max(1, seen.sum() - columns.shape[1])
-        scatter[mode] = float(np.sqrt((left**2).sum() / freedom))
-        follows = float(left[:-1] @ left[1:]) / max(float(left @ left), 1e-300)
-        memory[mode] = float(np.clip(follows, 0.0, MOST_MEMORY))
+        steps[mode] = [_variance(left[lag:] - left[:-lag]) for lag in (1, 2)]
+    shown = np.isfinite(steps).all(1)
+    if shown.any():
+        # By steps from one window to the next and to the one after: a change that comes and stays
+        # is no noise. Of noise with memory m their variances are 2 s^2 (1 - m) and 2 s^2 (1 - m^2).
+        # Windows overlap or follow each other alike for all modes, and so does their memory.
+        near, far = steps[shown].T
+        kept = float(np.clip(np.median(far / np.maximum(near, 1e-300)) - 1.0, 0.0, MOST_MEMORY))
+        memory[shown] = kept
+        scatter[shown] = np.sqrt(near / (2.0 * (1.0 - kept)))
     return np.maximum(scatter, LEAST_SCATTER), memory
+
+
+def _variance(steps: FloatArray) -> float:
+    """Of steps about zero, the few that are far out drawn in."""
+    usual = float(np.median(np.abs(steps))) / NORMAL
+    return float((np.clip(steps, -FAR_OUT * usual, FAR_OUT * usual) ** 2).mean())

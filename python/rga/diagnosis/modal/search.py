@@ -11,9 +11,11 @@ from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.findings.criteria import Criteria
 
-#: prospects that are fitted whatever their kind, and share of the best score below which a
-#: prospect is far behind
-FITTED, FAR = 8, 0.3
+#: prospects that are fitted whatever their kind: so many, or as many as are so near the best
+#: [log-odds], but not more than so many; and share of the best score below which one is far behind
+FITTED, NEAR, MOST, FAR = 8, 12.0, 24, 0.3
+#: coordinates beyond which a parameter is too unlikely for a rival by the data alone
+UNLIKELY = 4.5
 Progress = Callable[[str, float], None]
 
 
@@ -25,7 +27,8 @@ class ModalFound:
         fit: the causes together.
         log_odds: of each against leaving it out.
         rivals: of each what could stand in its place, the nearest first, with how far behind it is
-            [log-odds].
+            [log-odds]: by its evidence, or by the data alone where that is less. What is usual of
+            moduli, masses and clocks, which are alike in all modes, must not tell them apart.
         first: prospects beside nothing, the best first.
     """
 
@@ -82,9 +85,10 @@ def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
     kinds: dict[str, ModalProspect] = {}
     for one in promising:
         kinds.setdefault(one.hypothesis.name, one)
-    chosen = list(promising[:FITTED])
-    chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
     best = promising[0].score if promising else 0.0
+    near = sum(one.score > best - NEAR for one in promising)
+    chosen = list(promising[: min(max(FITTED, near), MOST)])
+    chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
     return [one for one in chosen if one.score > min(FAR * best, best - 30.0) or one.score > 0]
 
 
@@ -95,9 +99,7 @@ def without(current: ModalFit, number: int) -> ModalFit:
 
 
 def _beside(current: ModalFit, one: ModalProspect) -> ModalFit:
-    return fitted(
-        current.likelihood, [*current.hypotheses, one.hypothesis], [*current.z, *one.z]
-    )
+    return fitted(current.likelihood, [*current.hypotheses, one.hypothesis], [*current.z, *one.z])
 
 
 def _pruned(current: ModalFit, least: float) -> ModalFit:
@@ -122,9 +124,7 @@ def _rivals(
     others = [one for k, one in enumerate(current.hypotheses) if k != number]
     z = np.delete(current.z, current.of(number))
     promising = (
-        first
-        if not others
-        else prospects(likelihood, candidates, others, z, lambda done: None)
+        first if not others else prospects(likelihood, candidates, others, z, lambda done: None)
     )
     own = current.hypotheses[number]
     found = []
@@ -133,5 +133,8 @@ def _rivals(
             continue
         other = fitted(likelihood, [*others, one.hypothesis], [*z, *one.z])
         if np.isfinite(other.log_evidence):
-            found.append((other, current.log_evidence - other.log_evidence))
+            behind = current.log_evidence - other.log_evidence
+            if np.abs(other.z[other.of(len(others))]).max(initial=0.0) <= UNLIKELY:
+                behind = min(behind, other.likelihood_loss - current.likelihood_loss)
+            found.append((other, behind))
     return sorted(found, key=lambda pair: pair[1])

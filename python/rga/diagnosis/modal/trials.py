@@ -81,9 +81,9 @@ class ModalTrials:
         structures = ModalStructures(model)
         self._given = _contexts(model, structures.needed, readings)
         chosen, self._weights = self._supports(structures.needed)
-        self._contexts: Values = {
-            name: column[chosen] for name, column in self._given.items()
-        } | {"time": readings.time[chosen]}
+        self._contexts: Values = {name: column[chosen] for name, column in self._given.items()} | {
+            "time": readings.time[chosen]
+        }
         self._structures = structures.each_under(self._contexts)
         self._values = structures.parameters(self._contexts)
         self._middle = len(chosen) // 2
@@ -169,9 +169,7 @@ class ModalTrials:
         for number, acting in enumerate(parts.T):
             own = of_window == number
             some = iter(acting)
-            now = [
-                one if one.onset is None else _partly(one, float(next(some))) for one in effects
-            ]
+            now = [one if one.onset is None else _partly(one, float(next(some))) for one in effects]
             state = self._state([one for one in now if one is not None])
             log_f[own] = self._weights[own] @ state.log_f
             shares.append(float(own.mean()))
@@ -240,7 +238,7 @@ class ModalTrials:
 
     def at_points(self, shapes: FloatArray) -> FloatArray:
         """Motion of shapes float[modes, nodes, 3] at the points, float[modes, points]."""
-        return np.einsum("mpk,pk->mp", shapes[:, self._nodes], self._axes)
+        return np.asarray(np.einsum("mpk,pk->mp", shapes[:, self._nodes], self._axes))
 
     def _modes(self, structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Modes up to where the measured ones may be."""

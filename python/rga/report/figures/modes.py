@@ -80,7 +80,9 @@ def _mode(
     ends_of = ("before", "after")
     off = np.expm1(np.nanmean(mode.log_f - (mode.before, mode.after)[column]))
     alike = mode.mac[column]
-    words = f"{mode.name} {ends_of[column]}: computed mode {mode.number[column]}, {100 * off:+.1f} %"
+    words = (
+        f"{mode.name} {ends_of[column]}: computed mode {mode.number[column]}, {100 * off:+.1f} %"
+    )
     words += f", MAC {alike:.2f}" if np.isfinite(alike) else ", by frequency only"
     axes.set_title(words, fontsize=8.5, loc="left", pad=2)
     axes.set_aspect("equal")

@@ -69,7 +69,15 @@ class ModalSimulator:
         """
         structures, of_row = self._structures.under(contexts)
         found = np.array([self._read(structure) for structure in structures])
-        return found.reshape(len(structures), len(self.model.modal_sensors))[of_row]
+        shown = found.reshape(len(structures), len(self.model.modal_sensors))[of_row]
+        clocks = [one for one in self.model.effects.values() if one.overrides("frequency_factor")]
+        if clocks:
+            hertz = np.array([one.point is None for one in self.model.modal_sensors.values()])
+            given = self._structures.table(contexts)
+            for clock in clocks:
+                factor = clock.frequency_factor(clock.values(given, len(shown)))
+                shown[:, hertz] *= factor[:, None]
+        return shown
 
     def pair(self, contexts: Contexts | None = None) -> tuple[Pairing, FloatArray, FloatArray]:
         """Which computed mode is which, under one row of contexts.

@@ -1,6 +1,7 @@
 """The structures whose modes are computed, and what the core computes of them."""
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ class ModalStructures:
     def __init__(self, model: Model) -> None:
         bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
         silent = model.model_copy(update={"sensors": {}, "effects": bare})
-        self._model, self._begun = model, when_all_act(bare.values())
+        self._model, self._begun = model, when_all_act(model.effects.values())
         self._simulator = Simulator(silent, build_structure(silent))
 
     def under(self, contexts: Contexts | None) -> tuple[list[Structure], IntArray]:
@@ -37,9 +38,7 @@ class ModalStructures:
         Raises:
             InputError: as `results`; or one has no natural frequency of its own.
         """
-        given = {} if contexts is None else dict(contexts_by_name(contexts, self._model.context))
-        if self._begun is not None and "time" not in given:
-            given["time"] = self._begun
+        given = self._given(contexts)
         values = self._simulator.parameters(given)
         rows = max((np.size(column) for column in given.values()), default=1)
         request = self._simulator.assembly.request(values, rows)
@@ -52,6 +51,21 @@ class ModalStructures:
                 "leave out these effects, or put stiffnesses in their place",
             )
         return structures, request.state_of_row
+
+    def table(self, contexts: Contexts | None) -> Values:
+        """Contexts with time, float[rows] each, with the errors of `under` (InputError)."""
+        given = {"time": 0.0, **self._given(contexts)}
+        rows = max((np.size(column) for column in given.values()), default=1)
+        return {
+            name: np.broadcast_to(np.asarray(column, dtype=float).ravel(), rows)
+            for name, column in given.items()
+        }
+
+    def _given(self, contexts: Contexts | None) -> dict[str, Any]:
+        given = {} if contexts is None else dict(contexts_by_name(contexts, self._model.context))
+        if self._begun is not None and "time" not in given:
+            given["time"] = self._begun
+        return given
 
     @cached_property
     def needed(self) -> set[str]:

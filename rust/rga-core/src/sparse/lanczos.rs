@@ -14,6 +14,10 @@ use crate::error::{Error, Result};
 const BLOCK: usize = 4;
 /// A vector that orthogonalisation leaves less of was in the space already.
 const DEPENDENT: f64 = 1e-10;
+/// One that it leaves less of has lost digits.
+const DELICATE: f64 = 1e-4;
+/// Of such a vector of length one, what is left when all of it was rounding.
+const ALL_ROUNDING: f64 = 0.1;
 /// Residual of an eigenvector, in the norm of K, over its eigenvalue, which errs by the square of
 /// that: of a space that starts with nothing, and of one that starts with vectors near by.
 const CONVERGED: f64 = 1e-11;
@@ -103,6 +107,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
 
     /// Adds irregular vectors to the space: copies of eigenvalues that it lacks come with them.
     pub(crate) fn start_anew(&mut self) -> Result<()> {
+        self.look = LOOK;
         let size = self.pencil.size();
         let mut forces = Vec::with_capacity(BLOCK);
         for _ in 0..BLOCK.min(size) {
@@ -143,23 +148,26 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         self.pencil.solve(&mut solved)?;
         let columns = solved.chunks_exact(self.pencil.size());
         for (vector, force) in columns.zip(forces) {
-            self.add_one(vector.to_vec(), force);
+            self.add_one(vector.to_vec(), force)?;
         }
         Ok(())
     }
 
-    fn add_one(&mut self, mut vector: Vec<f64>, mut stiff: Vec<f64>) {
+    fn add_one(&mut self, mut vector: Vec<f64>, mut stiff: Vec<f64>) -> Result<()> {
         let before = dot(&vector, &stiff).max(0.0).sqrt();
-        for _ in 0..2 {
-            for (other, other_stiff) in self.vectors.iter().zip(&self.stiff) {
-                let share = dot(other_stiff, &vector);
-                subtract(&mut vector, share, other);
-                subtract(&mut stiff, share, other_stiff);
-            }
-        }
-        let norm = dot(&vector, &stiff).max(0.0).sqrt();
+        let mut norm = self.orthogonalise(&mut vector, &mut stiff);
         if norm <= DEPENDENT * before || norm == 0.0 {
-            return;
+            return Ok(());
+        }
+        if norm <= DELICATE * before {
+            // What is left of both has lost digits, each its own: they belong together again.
+            stiff.iter_mut().for_each(|value| *value /= norm);
+            vector.copy_from_slice(&stiff);
+            self.pencil.solve(&mut vector)?;
+            norm = self.orthogonalise(&mut vector, &mut stiff);
+            if norm < ALL_ROUNDING {
+                return Ok(());
+            }
         }
         vector.iter_mut().for_each(|value| *value /= norm);
         stiff.iter_mut().for_each(|value| *value /= norm);
@@ -174,6 +182,20 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         self.vectors.push(vector);
         self.stiff.push(stiff);
         self.heavy.push(heavy);
+        Ok(())
+    }
+
+    /// Takes what lies in the space off a vector and its image under K, twice; the norm of what is
+    /// left.
+    fn orthogonalise(&self, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
+        for _ in 0..2 {
+            for (other, other_stiff) in self.vectors.iter().zip(&self.stiff) {
+                let share = dot(other_stiff, vector);
+                subtract(vector, share, other);
+                subtract(stiff, share, other_stiff);
+            }
+        }
+        dot(vector, stiff).max(0.0).sqrt()
     }
 
     /// The largest of those whose vectors K^-1 M has been applied to.

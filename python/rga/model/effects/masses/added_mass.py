@@ -50,8 +50,11 @@ class AddedMass(Effect):
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from ({"group": group} for group in model.groups)
-        heavy = (mass.node for mass in model.masses.values() if mass.node is not None)
-        yield from ({"node": node} for node in dict.fromkeys(heavy))
+        masses = (mass.node for mass in model.masses.values() if mass.node is not None)
+        heavy = list(dict.fromkeys(masses))
+        yield from ({"node": node} for node in heavy)
+        if len(heavy) > 1:
+            yield {"node": heavy}
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:

@@ -36,7 +36,9 @@ def sprung_nodes(model: Model) -> Iterator[dict[str, Any]]:
     """Nodes that springs of the model tie to the ground: one by one, by lines, and all."""
     for dof in _in_plane(model, DOFS):
         names = [one.node for one in model.springs if one.to is None and one.dof == dof]
-        yield from ({"node": place, "dof": dof} for place in _lines(model, {name: name for name in names}))
+        yield from (
+            {"node": place, "dof": dof} for place in _lines(model, {name: name for name in names})
+        )
 
 
 def turns(dof: str) -> bool:
@@ -51,7 +53,7 @@ def only_free(model: Model, support: str | list[str], dof: str) -> None:
             raise ValueError(f"support {name!r} holds {dof}: name a free direction")
 
 
-def supported(structure: Structure, support: str | list[str]) -> list[int]:
+def supported(structure: Structure, support: str | list[str] | None) -> list[int]:
     """Nodes of the supports of a place."""
     return [structure.supports[name] for name in listed(support)]
 

@@ -1,0 +1,66 @@
+"""The likelihood of measured modes is that of a dense covariance."""
+
+import numpy as np
+import pytest
+
+from independent.modal_bridge import Hidden, measured
+from rga.diagnosis.modal.fit import fitted
+from rga.diagnosis.modal.likelihood import CHANGE_ERROR, ModalLikelihood
+from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.trials import ModalTrials
+from rga.model.effects.members.elastic_modulus import ElasticModulus
+
+
+@pytest.fixture(scope="module")
+def likelihood() -> ModalLikelihood:
+    model, record = measured(3, Hidden(), modes=4, windows=25)
+    return ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+
+
+def dense(likelihood: ModalLikelihood, mode: int, change: float) -> np.ndarray:
+    """Covariance of the windows in which a mode was found."""
+    readings = likelihood.readings
+    seen = np.flatnonzero(np.isfinite(readings.log_f[:, mode]))
+    apart = np.abs(seen[:, None] - seen)
+    noise = readings.scatter[mode] ** 2 * readings.memory[mode] ** apart
+    return np.asarray(noise + likelihood.level**2 + (CHANGE_ERROR * change) ** 2)
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.8])
+def test_squares_and_freedom_are_those_of_the_dense_covariance(
+    likelihood: ModalLikelihood, factor: float
+) -> None:
+    softer = {"e": ElasticModulus(material="steel", factor=factor)} if factor != 1.0 else {}
+    prediction, nothing = (likelihood.trials.predict(one) for one in (softer, {}))
+    square, freedom = 0.0, 0.0
+    for mode in range(len(likelihood.readings.modes)):
+        off = likelihood.readings.log_f[:, mode] - prediction.log_f[:, mode]
+        off = off[np.isfinite(off)]
+        change = float((prediction.log_f - nothing.log_f)[0, mode])
+        own, without = dense(likelihood, mode, change), dense(likelihood, mode, 0.0)
+        square += float(off @ np.linalg.solve(own, off))
+        freedom += 0.5 * float(np.linalg.slogdet(own)[1] - np.linalg.slogdet(without)[1])
+        apart = likelihood.shape_off(mode, prediction)
+        square += float(apart @ apart) / likelihood.shape_spread(mode) ** 2
+    residual = likelihood.residual(prediction)
+    np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
+    np.testing.assert_allclose(likelihood.freedom(prediction), freedom, rtol=1e-9, atol=1e-12)
+
+
+def test_shape_error_is_what_mac_lacks(likelihood: ModalLikelihood) -> None:
+    prediction = likelihood.trials.predict({})
+    for mode in range(len(likelihood.readings.modes)):
+        apart = likelihood.shape_off(mode, prediction)
+        np.testing.assert_allclose(apart @ apart, 1.0 - prediction.mac[mode], atol=1e-12)
+
+
+def test_a_hidden_mode_counts_for_nothing(likelihood: ModalLikelihood) -> None:
+    prediction = likelihood.trials.predict({})
+    whole = likelihood.residual(prediction)
+    parts = [likelihood.hiding(mode).residual(prediction) for mode in range(4)]
+    total = sum(float(part @ part) for part in parts)
+    np.testing.assert_allclose(total, 3.0 * float(whole @ whole), rtol=1e-12)
+
+
+def test_nothing_has_no_evidence(likelihood: ModalLikelihood) -> None:
+    assert fitted(likelihood, [], []).log_evidence == 0.0

@@ -1,0 +1,47 @@
+"""Measured modes: their noise from repeats, and the mean of their shapes."""
+
+import numpy as np
+import pytest
+
+from independent.modal_bridge import MISSING, NOISE, Hidden, measured
+from rga.diagnosis.modal.readings import ModalReadings, mean_shape
+from rga.errors import InputError
+
+
+def test_noise_is_that_of_repeats_and_a_step_is_none() -> None:
+    steady = ModalReadings.of(*measured(1, Hidden(), windows=300))
+    moved = ModalReadings.of(
+        *measured(1, Hidden(stiffness={"bottom bracing": 0.7}, onset=150), windows=300)
+    )
+    np.testing.assert_allclose(steady.scatter, NOISE, rtol=0.25)
+    np.testing.assert_allclose(moved.scatter, NOISE, rtol=0.35)
+    np.testing.assert_allclose(steady.found, 1.0 - MISSING, atol=0.06)
+    assert np.abs(steady.memory - 0.3).max() < 0.25
+
+
+def test_shapes_are_turned_onto_each_other() -> None:
+    shape = np.array([1.0, -2.0, 0.5])
+    entries = np.array([shape, -3.0 * shape, [2.0, np.nan, 1.0], [np.nan] * 3])
+    mean, at, noise = mean_shape(entries, np.array([0.9, -2.2, 0.4]))
+    np.testing.assert_allclose(mean, shape / np.linalg.norm(shape), atol=1e-9)
+    assert at.tolist() == [0, 1, 2]
+    assert noise < 1e-12
+
+
+def test_without_shapes_nothing_is_said_of_them() -> None:
+    mean, at, noise = mean_shape(np.full((3, 2), np.nan), np.array([1.0, 1.0]))
+    assert (len(mean), len(at), noise) == (0, 0, 0.0)
+
+
+def test_a_record_of_other_modes_is_refused() -> None:
+    model, record = measured(1, Hidden())
+    other = model.model_copy(
+        update={
+            "modes": {
+                name: mode.model_copy(update={"near": 50.0 * mode.near})
+                for name, mode in model.modes.items()
+            }
+        }
+    )
+    with pytest.raises(InputError, match="none of the modes that the model expects"):
+        ModalReadings.of(other, record)
