@@ -166,4 +166,4 @@ class ModalLikelihood:
             memory = float(series.memory.max(initial=0.0))
             count = max(1.0, series.seen.sum() * (1.0 - memory) / (1.0 + memory))
             spreads.append(np.hypot(self.level, scatter / np.sqrt(count)))
-        return np.hypot(spreads, change)
+        return np.asarray(np.hypot(spreads, change))
