@@ -15,7 +15,7 @@ from rga.model.schema import Model
 
 #: places of a kind at one member or node that are simulated: by what they would explain, and by
 #: how much they move
-EXPLAINING, MOVING = 12, 6
+EXPLAINING, MOVING = 15, 6
 #: beginnings that are distinguished, and windows that must lie on either side of one
 BEGINNINGS, EITHER = 30, 5
 #: prospects that are simulated at the size that they promise, and the farthest of these [prior sd]
@@ -76,8 +76,8 @@ def prospects(
     if base is None:
         return []
     left = likelihood.residual(base)
-    worth = _worth_simulating(likelihood, candidates, left)
     steps = _Steps.of(likelihood, left)
+    worth = _worth_simulating(likelihood, candidates, left, steps)
     several = []
     for number, (candidate, simulated) in enumerate(zip(candidates, worth, strict=True)):
         progress(number / max(len(candidates), 1))
@@ -201,7 +201,10 @@ class _Steps:
 
 
 def _worth_simulating(
-    likelihood: ModalLikelihood, candidates: Sequence[Hypothesis], left: FloatArray
+    likelihood: ModalLikelihood,
+    candidates: Sequence[Hypothesis],
+    left: FloatArray,
+    steps: _Steps,
 ) -> BoolArray:
     """Which candidates are simulated: of the places of a kind at one member or node, some.
 
@@ -230,9 +233,13 @@ def _worth_simulating(
     chosen = np.ones(len(candidates), dtype=bool)
     for of_kind in slopes.values():
         numbers = np.array([number for number, _ in of_kind])
-        changes = np.array([slope for _, slope in of_kind]) @ at_once
+        several = np.array([slope for _, slope in of_kind])
+        changes = several @ at_once
         sizes = (changes**2).sum(1)
         scores = (changes @ left[: changes.shape[1]]) ** 2 / (1.0 + sizes)
+        if len(steps.onsets):
+            late = (steps.along @ several.T) ** 2 / (1.0 + steps.squares @ several.T**2)
+            scores = np.maximum(scores, late.max(0))
         chosen[numbers] = False
         chosen[numbers[np.argsort(-scores, kind="stable")[:EXPLAINING]]] = True
         chosen[numbers[np.argsort(-sizes, kind="stable")[:MOVING]]] = True
