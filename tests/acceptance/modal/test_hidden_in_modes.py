@@ -4,6 +4,7 @@ The truth is a frame with scatter, solved by plain NumPy; who analyses it holds 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -107,3 +108,19 @@ def test_a_weak_member_is_among_what_cannot_be_told_apart(seed: int) -> None:
     assert any(one.get("member") == "b0n-t1n" for one in near)
     weak = next(one for one in near if one.get("member") == "b0n-t1n")
     np.testing.assert_allclose(weak["factor"]["value"], 0.5, atol=0.1)
+
+
+def test_few_modes_decide_nothing() -> None:
+    model, record = measured(0, Hidden(), modes=2)
+    findings = diagnose_modes(model, record)
+    assert findings.verdict == "unknown"
+    assert "3 are needed to decide" in findings.unexplained.looks_like
+
+
+@thorough
+def test_causes_of_modes_without_shapes_are_no_certainty() -> None:
+    model, record = measured(0, soft_bracing())
+    blind = replace(record, points=(), shapes=record.shapes[:, :0])
+    findings = diagnose_modes(model, blind)
+    assert findings.verdict in ("partial", "unknown")
+    assert "frequencies alone" in findings.unexplained.looks_like or not findings.causes

@@ -57,5 +57,5 @@ class TestPdf:
         assert content.rstrip().endswith(b"%%EOF")
 
     def test_a_report_is_printed_on_a4(self) -> None:
-        template = Path(pdf.__file__).parent / "templates" / "report.html.j2"
+        template = Path(pdf.__file__).parent / "templates" / "style.css.j2"
         assert "@page { size: A4;" in template.read_text(encoding="utf-8")

@@ -43,6 +43,8 @@ from rga.records.modal.record import ModalRecord
 Progress = Callable[[str, float], None]
 #: of intervals
 CONFIDENCE = 0.9
+#: modes without which nothing is said to be right
+FEW_MODES = 3
 #: decimals of log-odds
 DECIMALS = 2
 
@@ -94,6 +96,7 @@ def _diagnosed(
     doubts = modes_off(likelihood, after)
     if found.fit.hypotheses and left_out.after.mean() >= left_out.before.mean():
         doubts.append("modes that were left out are predicted no better with the causes")
+    doubts += _thin(readings, bool(found.fit.hypotheses))
     if readings.doubtful:
         doubts.append(
             f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
@@ -136,6 +139,25 @@ def estimated(fit: ModalFit, number: int) -> Effect:
         ends = sorted(prior.value(float(z + sign * NORMAL_90 * spread)) for sign in (-1, 1))
         values[name] = Estimated(value=prior.value(float(z)), ci90=(ends[0], ends[1]))
     return hypothesis.effect(fit.z[where]).with_values(values)
+
+
+def _thin(readings: ModalReadings, causes: bool) -> list[str]:
+    """In words: why so few modes, or modes without shapes, decide nothing."""
+    words = []
+    if len(readings.modes) < FEW_MODES:
+        words.append(
+            f"{len(readings.modes)} of the modes expected were found, and {FEW_MODES} are needed "
+            "to decide"
+        )
+    blind = [
+        name for name, look in zip(readings.modes, readings.looks, strict=True) if not len(look.at)
+    ]
+    if causes and blind:
+        words.append(
+            f"modes {', '.join(blind)} are known by their frequencies alone: which computed modes "
+            "they are is a guess, and the causes hang on it"
+        )
+    return words
 
 
 def _verdict(found: ModalFound, structure: bool, criteria: Criteria) -> Verdict:

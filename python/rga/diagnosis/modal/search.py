@@ -14,6 +14,8 @@ from rga.findings.criteria import Criteria
 #: prospects that are fitted whatever their kind: so many, or as many as are so near the best
 #: [log-odds], but not more than so many; and share of the best score below which one is far behind
 FITTED, NEAR, MOST, FAR = 8, 12.0, 24, 0.3
+#: modes that speak for a cause: fewer are explained by anything
+MODES_A_CAUSE = 3
 #: coordinates beyond which a parameter is too unlikely for a rival by the data alone
 UNLIKELY = 4.5
 Progress = Callable[[str, float], None]
@@ -49,7 +51,8 @@ def search(
     naming = criteria.naming
     first: list[ModalProspect] = []
     tried: list[list[ModalFit]] = []
-    for number in range(min(naming.most_causes, len(likelihood.readings.modes))):
+    modes = len(likelihood.readings.modes)
+    for number in range(min(naming.most_causes, max(1, modes // MODES_A_CAUSE))):
         words = "screening" if number == 0 else f"looking for cause {number + 1}"
         promising = prospects(
             likelihood,

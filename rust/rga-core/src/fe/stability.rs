@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::fe::assembly::assemble;
 use crate::fe::equilibrium::{REFINE, REFUSE};
 use crate::fe::free_rotations::FreeRotation;
+use crate::fe::mechanism::mechanism;
 use crate::fe::model::Model;
 use crate::fe::reduction::{NO_STIFFNESS, Reduction, stiffest};
 use crate::sparse::factor::Factor;
@@ -39,9 +40,6 @@ const STEPS: usize = 20;
 /// Changes of a motion below this are rounding.
 const SETTLED: f64 = 1e-13;
 
-/// Among motions within this part of the largest, the first dof is named.
-const AS_LARGE: f64 = 1.0 - 1e-6;
-
 /// K of the unknowns, scaled to unit diagonal and factorised. Scaling makes
 /// the pivots dimensionless: translations and rotations compare.
 pub(crate) struct Solver {
@@ -54,11 +52,7 @@ pub(crate) struct Solver {
 
 impl Solver {
     pub(crate) fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
-        let mut matrix = assemble(model, reduction);
-        let free_rotations = FreeRotation::find(&matrix, reduction);
-        free_rotations
-            .iter()
-            .for_each(|rotation| rotation.hold(&mut matrix));
+        let (matrix, free_rotations) = held(assemble(model, reduction), reduction);
         let places = reduction.places(&model.nodes);
         Self::analyse(matrix, free_rotations, &places, 1.0)?.standing(model, reduction)
     }
@@ -66,15 +60,12 @@ impl Solver {
     /// The solver of another structure with the analysis of this one, where what it couples
     /// is coupled in this one.
     pub(crate) fn of_another(&self, model: &Model, reduction: &Reduction) -> Result<Option<Self>> {
-        let Some(mut matrix) = assemble(model, reduction).in_places_of(&self.matrix) else {
+        let Some(matrix) = assemble(model, reduction).in_places_of(&self.matrix) else {
             return Ok(None);
         };
-        let free_rotations = FreeRotation::find(&matrix, reduction);
-        free_rotations
-            .iter()
-            .for_each(|rotation| rotation.hold(&mut matrix));
+        let (matrix, free_rotations) = held(matrix, reduction);
         let solver = Self {
-            scale: vec![1.0; matrix.size()],
+            scale: Vec::new(),
             factor: self.factor.another()?,
             free_rotations,
             matrix,
@@ -315,7 +306,7 @@ impl Solver {
     /// The error for K that does not factorise, or leaves a large residual.
     pub(crate) fn unstable(&self, model: &Model, reduction: &Reduction) -> Error {
         match self.null_vector() {
-            Ok(motion) => name(
+            Ok(motion) => mechanism(
                 &displacements(&motion, &self.scale, model, reduction),
                 model.arm(),
             ),
@@ -346,6 +337,13 @@ impl Solver {
     }
 }
 
+/// A stiffness with its free rotations, which are held in it.
+fn held(mut matrix: LowerTriangle, reduction: &Reduction) -> (LowerTriangle, Vec<FreeRotation>) {
+    let found = FreeRotation::find(&matrix, reduction);
+    found.iter().for_each(|rotation| rotation.hold(&mut matrix));
+    (matrix, found)
+}
+
 fn scaling(matrix: &LowerTriangle, reduction: &Reduction, dofs: usize) -> Vec<f64> {
     let mut all = vec![0.0; dofs];
     for (&dof, value) in reduction.unknowns.iter().zip(matrix.diagonal()) {
@@ -368,35 +366,4 @@ fn displacements(motion: &[f64], scale: &[f64], model: &Model, reduction: &Reduc
     let mut displacements = vec![0.0; model.dofs];
     reduction.expand(&unscaled, &mut displacements);
     displacements
-}
-
-/// Where a mechanism moves most; `arm` makes rotations count as translations.
-fn name(displacements: &[f64], arm: f64) -> Error {
-    let size = |dof: usize| {
-        let lever = if dof % 6 < 3 { 1.0 } else { arm };
-        displacements[dof].abs() * lever
-    };
-    let dofs = displacements.len();
-    let most = (0..dofs).map(size).fold(0.0, f64::max);
-    let worst = (0..dofs)
-        .find(|&dof| size(dof) >= AS_LARGE * most)
-        .unwrap_or(0);
-    let node = worst / 6;
-    let mut direction = [0.0; 6];
-    direction.copy_from_slice(&displacements[6 * node..6 * node + 6]);
-    let norm = direction
-        .iter()
-        .map(|value| value * value)
-        .sum::<f64>()
-        .sqrt();
-    if norm > 0.0 {
-        // The sign is free: the named dof moves forward.
-        let norm = norm.copysign(direction[worst % 6]);
-        direction.iter_mut().for_each(|value| *value /= norm);
-    }
-    Error::UnstableStructure {
-        node,
-        dof: worst % 6,
-        direction,
-    }
 }
