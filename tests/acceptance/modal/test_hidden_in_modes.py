@@ -5,6 +5,7 @@ The truth is a frame with scatter, solved by plain NumPy; who analyses it holds 
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import datetime
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from independent.modal_bridge import Hidden, measured
 from rga.diagnosis import diagnose_modes
 from rga.findings import Findings
+from rga.simulation import ModalSimulator
 
 ONSET = 20
 #: time of that window [s]
@@ -44,6 +46,10 @@ def wrong_clock() -> Hidden:
 
 def soft_bracing() -> Hidden:
     return Hidden(stiffness={"bottom bracing": 0.5})
+
+
+def soft_bracing_later() -> Hidden:
+    return Hidden(stiffness={"bottom bracing": 0.5}, onset=ONSET)
 
 
 def soft_bearings() -> Hidden:
@@ -108,6 +114,21 @@ def test_a_weak_member_is_among_what_cannot_be_told_apart(seed: int) -> None:
     assert any(one.get("member") == "b0n-t1n" for one in near)
     weak = next(one for one in near if one.get("member") == "b0n-t1n")
     np.testing.assert_allclose(weak["factor"]["value"], 0.5, atol=0.1)
+
+
+def test_an_onset_is_told_as_the_record_writes_its_times() -> None:
+    model, record = measured(0, soft_bracing_later(), modes=3)
+    first = replace(record, start="2026-03-01T00:00:00+01:00")
+    findings = diagnose_modes(model, first)
+    assert findings.causes[0].onset == "2026-03-01T20:00:00+01:00"
+    extended = ModalSimulator(findings.extended)
+    times = {"time": record_times("2026-03-01T19:00:00+01:00", "2026-03-01T21:00:00+01:00")}
+    before, after = extended.predict(times)
+    assert (after < 0.99 * before).any()
+
+
+def record_times(*stamps: str) -> list[float]:
+    return [datetime.fromisoformat(one).timestamp() for one in stamps]
 
 
 def test_few_modes_decide_nothing() -> None:

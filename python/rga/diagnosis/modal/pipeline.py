@@ -118,7 +118,7 @@ def _diagnosed(
         criteria=criteria,
         seed=seed,
         model_sha256=model.sha256,
-        record_sha256=readings.sha256,
+        record_sha256=record.sha256,
         versions=versions(),
     )
     findings._modes = ModalArrays(
@@ -138,7 +138,11 @@ def estimated(fit: ModalFit, number: int) -> Effect:
     ):
         ends = sorted(prior.value(float(z + sign * NORMAL_90 * spread)) for sign in (-1, 1))
         values[name] = Estimated(value=prior.value(float(z)), ci90=(ends[0], ends[1]))
-    return hypothesis.effect(fit.z[where]).with_values(values)
+    found = hypothesis.effect(fit.z[where]).with_values(values)
+    if hypothesis.onset is None:
+        return found
+    onset = fit.likelihood.readings.label(hypothesis.onset)
+    return found.model_copy(update={"onset": onset})
 
 
 def _thin(readings: ModalReadings, causes: bool) -> list[str]:
@@ -279,7 +283,7 @@ def _explanations(
             Explanation(
                 words="; ".join(map(effect_words, effects)) or "no effect at all",
                 effects=effects,
-                log_odds=round(one.log_evidence, DECIMALS),
+                log_odds=round(one.log_evidence, DECIMALS) + 0.0,
                 gap=float(squares(likelihood, one.prediction).mean()),
                 remark=remark,
             )

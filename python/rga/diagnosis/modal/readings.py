@@ -34,7 +34,8 @@ class ModalReadings:
 
     Attributes:
         modes: names of those that were found, in the order of the model.
-        time: of the windows [s], float[windows].
+        record: out of which they are.
+        time: of the windows on the scale of onsets [s], float[windows].
         contexts: of the windows, float[windows] each.
         log_f: logarithms of the frequencies [ln Hz], float[windows, modes]; NaN where not found.
         scatter: of one window beside the others, as a share of the frequency, float[modes].
@@ -45,9 +46,9 @@ class ModalReadings:
         found: share of the windows in which each mode was found, float[modes].
         doubtful: windows of which another pairing is nearly as probable.
         unnamed: entries of the record that are none of the modes.
-        sha256: of the record.
     """
 
+    record: ModalRecord
     modes: tuple[str, ...]
     time: FloatArray
     contexts: dict[str, FloatArray]
@@ -59,7 +60,6 @@ class ModalReadings:
     found: FloatArray
     doubtful: int
     unnamed: int
-    sha256: str
 
     @classmethod
     def of(cls, model: Model, record: ModalRecord) -> "ModalReadings":
@@ -103,8 +103,9 @@ class ModalReadings:
         }
         scatter, memory = _noise(log_f, contexts, stated)
         return cls(
+            record=record,
             modes=tuple(names),
-            time=named.time,
+            time=record.origin + named.time,
             contexts=contexts,
             log_f=log_f,
             scatter=scatter,
@@ -114,16 +115,11 @@ class ModalReadings:
             found=np.isfinite(log_f).mean(0),
             doubtful=len(named.doubtful),
             unnamed=int((named.mode < 0).sum()),
-            sha256=record.sha256,
         )
 
-    def frequency(self) -> FloatArray:
-        """Median frequency of each mode [Hz], float[modes]."""
-        return np.array([look.near for look in self.looks])
-
-    def points(self) -> IntArray:
-        """Number of points at which each shape was measured, int[modes]."""
-        return np.array([len(look.at) for look in self.looks], dtype=np.int64)
+    def label(self, moment: float) -> str | float:
+        """A time on the scale of onsets [s] as the record writes it."""
+        return self.record.time_label(moment - self.record.origin)
 
 
 def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, IntArray, float]:

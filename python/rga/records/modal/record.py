@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
+from rga.model.effect import seconds
+from rga.records.record import time_label
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,15 @@ class ModalRecord:
 
     def __len__(self) -> int:
         return len(self.frequency)
+
+    @property
+    def origin(self) -> float:
+        """Time 0 on the scale of onsets [s]: as in the file, or since 1970."""
+        return seconds(self.start)
+
+    def time_label(self, elapsed: float) -> str | float:
+        """A time [s since time 0] as the record writes it: ISO 8601 text, or seconds."""
+        return time_label(self.start, elapsed)
 
     @property
     def windows(self) -> IntArray:
