@@ -14,6 +14,9 @@ import pytest
 from independent.modal_bridge import Hidden, measured
 from rga.diagnosis import diagnose_modes
 from rga.findings import Findings
+from rga.model import Model
+from rga.model.schema import ContextVariable
+from rga.records.modal.record import ModalRecord
 from rga.simulation import ModalSimulator
 
 ONSET = 20
@@ -93,6 +96,32 @@ def test_soft_bearings_are_named_at_their_end(seed: int) -> None:
     assert set(effect["support"]) == {"west n", "west s"}
     assert findings.gap.after < 0.1 * findings.gap.before
     assert findings.gap.held_out.gain > 0
+
+
+def with_temperature(seed: int, late: float) -> tuple[Model, ModalRecord]:
+    """Days that the model does not follow, and a change of all modes in the 31st of 60 hours."""
+    model, record = measured(seed, nothing(), windows=60)
+    air = 10.0 + 12.0 * np.sin(2 * np.pi * record.time / 86_400.0)
+    softer = np.exp(-2e-4 * (air - 10.0))
+    softer *= np.where(record.time >= 31 * 3600.0, late, 1.0)
+    model = model.model_copy(
+        update={"context": {"air": ContextVariable(unit="degC", range=(-20.0, 40.0))}}
+    )
+    return model, replace(record, frequency=record.frequency * softer, contexts={"air": air})
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))])
+def test_warm_days_that_the_model_does_not_follow_are_no_cause(seed: int) -> None:
+    findings = diagnose_modes(*with_temperature(seed, 1.0))
+    assert findings.causes == []
+
+
+@thorough
+def test_beside_warm_days_a_change_is_found_when_it_came() -> None:
+    findings = diagnose_modes(*with_temperature(0, 0.96))
+    assert findings.verdict == "ambiguous"
+    assert findings.causes[0].onset == 31 * 3600.0
+    assert {"elastic_modulus", "clock_rate", "mass_factor"} <= kinds(findings) <= COMMON
 
 
 @pytest.mark.parametrize("seed", SEEDS)

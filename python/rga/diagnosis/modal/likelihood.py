@@ -11,13 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.readings import ModalReadings, context_courses
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.simulation.modal.pairing import SHAPE_ERROR
 
 #: error that a model makes of what a cause changes of a frequency, as a share of the change:
 #: members as built and joints that it idealises leave about as much
 CHANGE_ERROR = 0.1
+#: what a context may do to a mode beside what the model says, over its range, as a share of the
+#: frequency: a deck of asphalt stiffens by more when it freezes, steel by less
+WEATHER = 0.03
 #: error that a model makes of a frequency when it is right in everything that one can name, as a
 #: share of it: Georgia Tech's footbridge and others leave 1 to 2 %
 MODEL_ERROR = 0.01
@@ -25,36 +28,44 @@ MODEL_ERROR = 0.01
 
 @dataclass(frozen=True)
 class _Series:
-    """The whitening of one mode's frequencies: x' C^-1 y is the product of whitened columns."""
+    """The whitening of one mode's frequencies: x' C^-1 y is the product of whitened columns.
+
+    C is that of noise with memory, and of columns of random size beside it; in the whitened space
+    these are shrunk along their principal directions (Woodbury's identity).
+    """
 
     seen: BoolArray
     weight: FloatArray
     memory: FloatArray
     along: FloatArray
-    shrunk: float
+    shrunk: FloatArray
 
     @classmethod
-    def of(cls, seen: BoolArray, scatter: float, memory: float, level: float) -> "_Series":
+    def of(cls, seen: BoolArray, scatter: float, memory: float, columns: FloatArray) -> "_Series":
         apart = np.diff(np.flatnonzero(seen), prepend=-1).astype(float)
         kept = memory**apart
         kept[:1] = 0.0
         weight = 1.0 / (scatter * np.sqrt(1.0 - kept**2))
-        ones = weight * (1.0 - kept)
-        length = float(np.linalg.norm(ones))
-        # The error of the model is the same in all windows: a column of ones of variance level^2.
-        shrunk = 1.0 - 1.0 / np.sqrt(1.0 + (level * length) ** 2)
-        return cls(seen, weight, kept, ones / length, shrunk)
+        along, sizes, _ = np.linalg.svd(_whitened(columns[:, seen], weight, kept).T, False)
+        return cls(seen, weight, kept, along, 1.0 - 1.0 / np.sqrt(1.0 + sizes**2))
 
     def whiten(self, columns: FloatArray) -> FloatArray:
         """Of columns float[..., windows], float[..., windows seen]."""
-        own = columns[..., self.seen]
-        white = own * self.weight
-        white[..., 1:] -= self.weight[1:] * self.memory[1:] * own[..., :-1]
-        return np.asarray(white - self.shrunk * (white @ self.along)[..., None] * self.along)
+        white = _whitened(columns[..., self.seen], self.weight, self.memory)
+        return np.asarray(white - ((white @ self.along) * self.shrunk) @ self.along.T)
+
+
+def _whitened(columns: FloatArray, weight: FloatArray, memory: FloatArray) -> FloatArray:
+    """Of noise with memory alone."""
+    white = columns * weight
+    white[..., 1:] -= weight[1:] * memory[1:] * columns[..., :-1]
+    return np.asarray(white)
 
 
 class ModalLikelihood:
     """The likelihood of measured modes.
+
+    What measured contexts do to each mode, beside what the model says of it, is free.
 
     Args:
         trials: what predicts them.
@@ -69,10 +80,14 @@ class ModalLikelihood:
         self.readings: ModalReadings = trials.readings
         count = len(self.readings.modes)
         self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
+        # The error of the model is the same in all windows; what a context does beside is not.
+        windows = len(self.readings.time)
+        weather = WEATHER * context_courses(self.readings.contexts, windows)
+        columns = np.concatenate([level * np.ones((1, windows)), weather])
         noise = zip(self.readings.scatter, self.readings.memory, strict=True)
         self._nothing = trials.predict({})
         self._series = [
-            _Series.of(np.isfinite(log_f), float(scatter), float(memory), level)
+            _Series.of(np.isfinite(log_f), float(scatter), float(memory), columns)
             for log_f, (scatter, memory) in zip(self.readings.log_f.T, noise, strict=True)
         ]
 

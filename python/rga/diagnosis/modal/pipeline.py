@@ -11,6 +11,7 @@ from rga.arrays import FloatArray
 from rga.diagnosis.assemble.effects import cause_name, content
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
+from rga.diagnosis.modal.doubts import thin, warnings_of, weather
 from rga.diagnosis.modal.fit import ModalFit, fitted, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
@@ -43,8 +44,6 @@ from rga.records.modal.record import ModalRecord
 Progress = Callable[[str, float], None]
 #: of intervals
 CONFIDENCE = 0.9
-#: modes without which nothing is said to be right
-FEW_MODES = 3
 #: decimals of log-odds
 DECIMALS = 2
 
@@ -96,7 +95,8 @@ def _diagnosed(
     doubts = modes_off(likelihood, after)
     if found.fit.hypotheses and left_out.after.mean() >= left_out.before.mean():
         doubts.append("modes that were left out are predicted no better with the causes")
-    doubts += _thin(readings, bool(found.fit.hypotheses))
+    doubts += thin(readings, bool(found.fit.hypotheses))
+    doubts += weather(readings, found.fit.hypotheses, after)
     if readings.doubtful:
         doubts.append(
             f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
@@ -114,7 +114,7 @@ def _diagnosed(
         ),
         explanations=_explanations(likelihood, found, criteria),
         groups=_groups(model, likelihood, nothing, after),
-        warnings=_warnings(model, readings),
+        warnings=warnings_of(model, readings),
         criteria=criteria,
         seed=seed,
         model_sha256=model.sha256,
@@ -143,25 +143,6 @@ def estimated(fit: ModalFit, number: int) -> Effect:
         return found
     onset = fit.likelihood.readings.label(hypothesis.onset)
     return found.model_copy(update={"onset": onset})
-
-
-def _thin(readings: ModalReadings, causes: bool) -> list[str]:
-    """In words: why so few modes, or modes without shapes, decide nothing."""
-    words = []
-    if len(readings.modes) < FEW_MODES:
-        words.append(
-            f"{len(readings.modes)} of the modes expected were found, and {FEW_MODES} are needed "
-            "to decide"
-        )
-    blind = [
-        name for name, look in zip(readings.modes, readings.looks, strict=True) if not len(look.at)
-    ]
-    if causes and blind:
-        words.append(
-            f"modes {', '.join(blind)} are known by their frequencies alone: which computed modes "
-            "they are is a guess, and the causes hang on it"
-        )
-    return words
 
 
 def _verdict(found: ModalFound, structure: bool, criteria: Criteria) -> Verdict:
@@ -346,24 +327,6 @@ def _share_left(likelihood: ModalLikelihood, before: Prediction, after: Predicti
     """Share of the squared deviations that is left."""
     first, last = (float(squares(likelihood, one).sum()) for one in (before, after))
     return min(1.0, last / first) if first > 0 else 0.0
-
-
-def _warnings(model: Model, readings: ModalReadings) -> list[str]:
-    warnings = []
-    without = [name for name in model.modes if name not in readings.modes]
-    if without:
-        warnings.append(f"modes that are in no window: {', '.join(without)}")
-    by_frequency = [
-        name for name, look in zip(readings.modes, readings.looks, strict=True) if not len(look.at)
-    ]
-    if by_frequency:
-        warnings.append(
-            f"paired by frequency only, without a shape: {', '.join(by_frequency)}; what trades "
-            "places with another mode passes for what moves"
-        )
-    if readings.unnamed:
-        warnings.append(f"{readings.unnamed} entries of the record are none of the modes expected")
-    return warnings
 
 
 def _mode_readings(

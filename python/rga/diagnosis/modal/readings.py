@@ -175,12 +175,7 @@ def _noise(
 ) -> tuple[FloatArray, FloatArray]:
     """Scatter and memory of the frequencies about what contexts do to them."""
     windows, modes = log_f.shape
-    basis = [np.ones(windows)]
-    for column in contexts.values():
-        if np.isfinite(column).all() and np.ptp(column) > 0:
-            scaled = (column - column.mean()) / np.ptp(column)
-            basis += [scaled, scaled**2, np.abs(scaled)]
-    columns = np.column_stack(basis)
+    columns = np.column_stack([np.ones(windows), context_courses(contexts, windows).T])
     scatter, memory = np.zeros(modes), np.zeros(modes)
     steps = np.full((modes, 2), np.nan)
     for mode in range(modes):
@@ -203,6 +198,19 @@ def _noise(
         memory[shown] = kept
         scatter[shown] = np.sqrt(near / (2.0 * (1.0 - kept)))
     return np.maximum(scatter, LEAST_SCATTER), memory
+
+
+def context_courses(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
+    """What may follow contexts, a line with a bend in it, over their range: float[k, windows]."""
+    courses = []
+    for column in contexts.values():
+        seen = np.isfinite(column)
+        if not seen.any() or np.ptp(column[seen]) == 0:
+            continue
+        filled = np.where(seen, column, column[seen].mean())
+        scaled = (filled - filled.mean()) / np.ptp(filled)
+        courses += [scaled, scaled**2 - (scaled**2).mean(), np.abs(scaled) - np.abs(scaled).mean()]
+    return np.array(courses).reshape(len(courses), windows)
 
 
 def _variance(steps: FloatArray) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.diagnosis.modal.candidates import ModalProspect, prospects
+from rga.diagnosis.modal.candidates import BEGINNINGS, ModalProspect, prospects
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.search.hypothesis import Hypothesis
@@ -64,7 +64,7 @@ def search(
         if not number:
             first = promising
         fits = [_beside(current, one) for one in worth_fitting(promising)]
-        best = max(fits, key=evidence, default=current)
+        best = _timed(max(fits, key=evidence, default=current))
         if best.log_evidence - current.log_evidence < naming.log_odds:
             break
         tried.append(fits)
@@ -105,6 +105,26 @@ def _beside(current: ModalFit, one: ModalProspect) -> ModalFit:
     return fitted(current.likelihood, [*current.hypotheses, one.hypothesis], [*current.z, *one.z])
 
 
+def _timed(one: ModalFit) -> ModalFit:
+    """The fit with the last onset moved to the likeliest window about it."""
+    if not one.hypotheses or one.hypotheses[-1].onset is None:
+        return one
+    last, best = one.hypotheses[-1], one
+    for moment in _about(one.likelihood, last):
+        moved = last.beginning(moment, last.profile, last.end)
+        other = fitted(one.likelihood, [*one.hypotheses[:-1], moved], one.z)
+        best = max(best, other, key=evidence)
+    return best
+
+
+def _about(likelihood: ModalLikelihood, late: Hypothesis) -> list[float]:
+    """Times of the windows between the beginnings that were tried, about that of a hypothesis."""
+    time = likelihood.readings.time
+    at = int(np.searchsorted(time, np.inf if late.onset is None else late.onset))
+    reach = len(time) // BEGINNINGS + 1
+    return [float(moment) for moment in time[max(1, at - reach) : at + reach + 1]]
+
+
 def _pruned(current: ModalFit, least: float) -> ModalFit:
     """Take out causes that others have made needless."""
     while current.hypotheses:
@@ -134,7 +154,11 @@ def _rivals(
     for one in worth_fitting(promising):
         if own.same_place(one.hypothesis):
             continue
-        other = fitted(likelihood, [*others, one.hypothesis], [*z, *one.z])
+        rival = one.hypothesis
+        if rival.onset is not None and own.onset in _about(likelihood, rival):
+            # What begins about then has the moment that was found, as the cause has.
+            rival = rival.beginning_with(own)
+        other = fitted(likelihood, [*others, rival], [*z, *one.z])
         if np.isfinite(other.log_evidence):
             behind = current.log_evidence - other.log_evidence
             if np.abs(other.z[other.of(len(others))]).max(initial=0.0) <= UNLIKELY:
