@@ -13,8 +13,9 @@ import pytest
 
 from independent.modal_bridge import Hidden, measured
 from rga.diagnosis import diagnose_modes
+from rga.errors import InputError
 from rga.findings import Findings
-from rga.model import Model
+from rga.model import Model, read_effect
 from rga.model.schema import ContextVariable
 from rga.records.modal.record import ModalRecord
 from rga.simulation import ModalSimulator
@@ -98,9 +99,9 @@ def test_soft_bearings_are_named_at_their_end(seed: int) -> None:
     assert findings.gap.held_out.gain > 0
 
 
-def with_temperature(seed: int, late: float) -> tuple[Model, ModalRecord]:
+def with_temperature(seed: int, late: float, hidden: Hidden) -> tuple[Model, ModalRecord]:
     """Days that the model does not follow, and a change of all modes in the 31st of 60 hours."""
-    model, record = measured(seed, nothing(), windows=60)
+    model, record = measured(seed, hidden, windows=60)
     air = 10.0 + 12.0 * np.sin(2 * np.pi * record.time / 86_400.0)
     softer = np.exp(-2e-4 * (air - 10.0))
     softer *= np.where(record.time >= 31 * 3600.0, late, 1.0)
@@ -112,16 +113,51 @@ def with_temperature(seed: int, late: float) -> tuple[Model, ModalRecord]:
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))])
 def test_warm_days_that_the_model_does_not_follow_are_no_cause(seed: int) -> None:
-    findings = diagnose_modes(*with_temperature(seed, 1.0))
+    findings = diagnose_modes(*with_temperature(seed, 1.0, nothing()))
     assert findings.causes == []
 
 
 @thorough
 def test_beside_warm_days_a_change_is_found_when_it_came() -> None:
-    findings = diagnose_modes(*with_temperature(0, 0.96))
+    findings = diagnose_modes(*with_temperature(0, 0.96, nothing()))
     assert findings.verdict == "ambiguous"
     assert findings.causes[0].onset == 31 * 3600.0
     assert {"elastic_modulus", "clock_rate", "mass_factor"} <= kinds(findings) <= COMMON
+
+
+def following(model: Model) -> Model:
+    """The same, whose members soften as it gets warm."""
+    groups = list(model.groups)
+    effects = {
+        "warm": {
+            "kind": "temperature",
+            "groups": dict.fromkeys(groups, 1.0),
+            "delta": {"context": "air", "minus": 10.0},
+        },
+        "softer": {"kind": "stiffness_temperature", "group": groups, "rate": -4e-4},
+    }
+    for name, effect in effects.items():
+        model = model.extended({name: read_effect(effect, name)})
+    return model
+
+
+@thorough
+@pytest.mark.parametrize("make", [nothing, soft_bracing])
+def test_a_model_that_follows_the_weather_is_compared_at_its_temperatures(
+    make: Callable[[], Hidden],
+) -> None:
+    hidden = make()
+    model, record = with_temperature(0, 1.0, hidden)
+    findings = diagnose_modes(following(model), record)
+    named = [(one.effect["kind"], one.effect["group"]) for one in findings.causes]
+    assert named == ([("member_stiffness", "bottom bracing")] if hidden.stiffness else [])
+
+
+@thorough
+def test_a_context_that_was_not_measured_is_asked_for() -> None:
+    model, record = with_temperature(0, 1.0, nothing())
+    with pytest.raises(InputError, match="context 'air', which drives the structure"):
+        diagnose_modes(following(model), replace(record, contexts={}))
 
 
 @pytest.mark.parametrize("seed", SEEDS)

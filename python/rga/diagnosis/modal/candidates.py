@@ -9,9 +9,9 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.fit import predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
-from rga.model.schema import Model
 
 #: places of a kind at one member or node that are simulated: by what they would explain, and by
 #: how much they move
@@ -39,19 +39,20 @@ class ModalProspect:
     largest: float
 
 
-def modal_hypotheses(model: Model, measured: Sequence[str]) -> list[Hypothesis]:
+def modal_hypotheses(trials: ModalTrials) -> list[Hypothesis]:
     """All hypotheses that natural frequencies and mode shapes can show.
 
-    Kinds that need contexts are there where all that drive the model were measured.
+    Kinds that follow contexts are there where the structure is looked at under several.
     """
+    model = trials.model
     kinds = []
     for kind in Effect.vocabulary.values():
         if not (kind.structural or kind.on_modes) or (kind.on_sensors and not kind.on_modes):
             continue
-        if kind.overrides("change_values") and set(model.context) - set(measured):
+        if kind.overrides("change_values") and not trials.follows_contexts:
             continue
         kinds.append(kind)
-    return hypotheses_of(kinds, model, (), measured)
+    return hypotheses_of(kinds, model, (), list(trials.readings.contexts))
 
 
 def prospects(

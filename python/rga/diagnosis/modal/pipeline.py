@@ -88,7 +88,7 @@ def _diagnosed(
 ) -> Findings:
     readings = ModalReadings.of(model, record)
     likelihood = ModalLikelihood(ModalTrials(model, readings))
-    found = search(likelihood, modal_hypotheses(model, list(record.contexts)), criteria, progress)
+    found = search(likelihood, modal_hypotheses(likelihood.trials), criteria, progress)
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)

@@ -12,8 +12,8 @@ from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.findings.criteria import Criteria
 
 #: prospects that are fitted whatever their kind: so many, or as many as are so near the best
-#: [log-odds], but not more than so many; and share of the best score below which one is far behind
-FITTED, NEAR, MOST, FAR = 8, 12.0, 24, 0.3
+#: [log-odds], but not more than so many; and log-odds by which a score may be wrong
+FITTED, NEAR, MOST, ROUGHLY = 8, 12.0, 24, 30.0
 #: modes that speak for a cause: fewer are explained by anything
 MODES_A_CAUSE = 3
 #: coordinates beyond which a parameter is too unlikely for a rival by the data alone
@@ -50,7 +50,6 @@ def search(
     current = fitted(likelihood, [], [])
     naming = criteria.naming
     first: list[ModalProspect] = []
-    tried: list[list[ModalFit]] = []
     modes = len(likelihood.readings.modes)
     for number in range(min(naming.most_causes, max(1, modes // MODES_A_CAUSE))):
         words = "screening" if number == 0 else f"looking for cause {number + 1}"
@@ -67,9 +66,7 @@ def search(
         best = _timed(max(fits, key=evidence, default=current))
         if best.log_evidence - current.log_evidence < naming.log_odds:
             break
-        tried.append(fits)
-        current = best
-        current = _pruned(current, naming.log_odds)
+        current = _pruned(best, naming.log_odds)
     odds, rivals = [], []
     for number in range(len(current.hypotheses)):
         progress("weighing rivals", number / len(current.hypotheses))
@@ -92,7 +89,7 @@ def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
     near = sum(one.score > best - NEAR for one in promising)
     chosen = list(promising[: min(max(FITTED, near), MOST)])
     chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
-    return [one for one in chosen if one.score > min(FAR * best, best - 30.0) or one.score > 0]
+    return [one for one in chosen if one.score > min(0.0, best - ROUGHLY)]
 
 
 def without(current: ModalFit, number: int) -> ModalFit:

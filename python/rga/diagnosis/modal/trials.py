@@ -1,7 +1,7 @@
 """What a model with effects predicts of the modes that were measured."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,24 +31,13 @@ class Prediction:
     """Modes as a model has them.
 
     Attributes:
-        log_f: [ln Hz], float[windows, modes].
+        log_f: [ln Hz], float[windows, modes], or of the contexts that stand for all.
         shapes: motion of all nodes along the axes in the middle of what the contexts were,
             averaged over the windows, float[modes, nodes, 3].
         number: of the computed mode that each is, there, int[modes].
         mac: of each with the measured shape, float[modes]; NaN without shape.
         doubtful: other pairings that are nearly as probable.
     """
-
-    log_f: FloatArray
-    shapes: FloatArray
-    number: IntArray
-    mac: FloatArray
-    doubtful: int
-
-
-@dataclass(frozen=True)
-class _State:
-    """Modes under the contexts that stand for all, with the same effects acting."""
 
     log_f: FloatArray
     shapes: FloatArray
@@ -93,6 +82,11 @@ class ModalTrials:
         self._known: dict[str, Prediction] = {}
         self._near: _core.ModalReanalysis | None = None
         self._near = self._reanalysis()
+
+    @property
+    def follows_contexts(self) -> bool:
+        """Whether contexts change the structure, and so more than one of them is looked at."""
+        return len(self._structures) > 1
 
     def predict(self, effects: Mapping[str, Effect]) -> Prediction:
         """The modes with more effects.
@@ -183,7 +177,7 @@ class ModalTrials:
             log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states)
         )
 
-    def _state(self, effects: Sequence[Effect]) -> _State:
+    def _state(self, effects: Sequence[Effect]) -> Prediction:
         values: list[Values] = []
         rows = len(self._structures)
         for effect in effects:
@@ -192,7 +186,7 @@ class ModalTrials:
                 effect.change_values({**self._values, "": own}, own, self._contexts["time"])
             values.append(own)
         log_f = []
-        middle: _State | None = None
+        middle: Prediction | None = None
         for row, structure in enumerate(self._structures):
             changed = structure
             if any(one.structural for one in effects):
@@ -214,9 +208,9 @@ class ModalTrials:
             if row == self._middle:
                 middle = state
         assert middle is not None  # one of the rows is the middle one
-        return _State(np.array(log_f), middle.shapes, middle.number, middle.mac, middle.doubtful)
+        return replace(middle, log_f=np.array(log_f))
 
-    def _paired(self, structure: Structure) -> _State:
+    def _paired(self, structure: Structure) -> Prediction:
         squares, shapes, *_ = self._modes(structure)
         moving = shapes[:, : len(self.model.nodes), :3]
         at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
@@ -228,7 +222,7 @@ class ModalTrials:
                 f"no computed mode is left for {lacking!r}", "modes", "state more masses"
             )
         number = pairing.computed
-        return _State(
+        return Prediction(
             np.log(frequencies[number]),
             moving[number],
             number,
@@ -283,20 +277,19 @@ def _partly(effect: Effect, weight: float) -> Effect | None:
 
 
 def _contexts(model: Model, needed: set[str], readings: ModalReadings) -> Values:
-    """Contexts of the windows, float[windows] each; what nobody needs lies in its middle."""
+    """Contexts of the windows, float[windows] each; what was not measured lies in its middle."""
     found: Values = {}
     for name, variable in model.context.items():
         column = readings.contexts.get(name)
-        if name in needed:
-            if column is None or not np.isfinite(column).any():
-                raise InputError(
-                    f"context {name!r}, which drives the structure, is not in the modal record",
-                    f"model {model.name!r}",
-                    f"give a column {name} beside the frequencies",
-                )
-            seen = np.isfinite(column)
-            time = readings.time
-            found[name] = np.interp(time, time[seen], column[seen])
+        seen = np.zeros(0, dtype=bool) if column is None else np.isfinite(column)
+        if column is not None and seen.any():
+            found[name] = np.interp(readings.time, readings.time[seen], column[seen])
+        elif name in needed:
+            raise InputError(
+                f"context {name!r}, which drives the structure, is not in the modal record",
+                f"model {model.name!r}",
+                f"give a column {name} beside the frequencies",
+            )
         else:
             found[name] = np.full(len(readings.time), sum(variable.range) / 2)
     return found
