@@ -13,10 +13,12 @@ from rga.arrays import FloatArray
 from rga.detection.alarm_explanation import Alarm, explain
 from rga.detection.assumption_checks import assumption_warnings
 from rga.detection.baseline.baseline_model import Reference, unwatched
+from rga.detection.baseline.slow_noise import long_run_variance
+from rga.detection.baseline.stationarity import watched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
-from rga.detection.thresholds import TailModel, calibration, memory_of, simulated_memory
+from rga.detection.thresholds import Noise, TailModel, calibration, memory_of
 from rga.errors import InputError
 from rga.numerics.seeds import as_seed
 
@@ -37,8 +39,9 @@ SECONDS = {"hour": 3600.0, "day": 86_400.0, "week": 604_800.0, "month": 2_629_80
 class SyncMonitor:
     """Watches residuals, or readings, of several sensors for any change of what they are like.
 
-    Learned from a baseline during which nothing changed: level, memory (autoregression), the
-    distribution of each sensor's readings, heavy tails included, and what sensors have in common.
+    Learned from a baseline during which nothing changed: level, memory (autoregression), slow
+    noise beyond it, the distribution of each sensor's readings, heavy tails included, and what
+    sensors have in common.
     Statistics for steps in one, several or all sensors, for drifts and for changes of variance, on
     scales from a quarter of a standard deviation up, are each held against a threshold. Thresholds
     come from simulated streams, whose references are learned from baselines as long as the user's,
@@ -91,13 +94,12 @@ class SyncMonitor:
             raise InputError(what, "the baseline", "give a longer one, or other sensors")
         rows = np.ascontiguousarray(given[:, self._watched])
         reference = Reference.learn(rows)
-        memory, length = memory_of(reference.weights), _rounded(len(rows))
-        simulated = calibration(
-            rows.shape[1], length, simulated_memory(memory), _arl0(arl0), as_seed(seed)
-        )
+        _, scores = watched(reference, rows)
+        noise = Noise.like(rows.shape[1], memory_of(reference.weights), long_run_variance(scores))
+        simulated = calibration(noise, _rounded(len(rows)), _arl0(arl0), as_seed(seed))
         self._begin(reference, simulated, arl0, seed)
-        watched = [called[column] for column in np.flatnonzero(self._watched).tolist()]
-        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, watched)
+        own = [called[column] for column in np.flatnonzero(self._watched).tolist()]
+        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, own)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:
@@ -116,7 +118,7 @@ class SyncMonitor:
             raise InputError(f"{n_sensors!r} sensors", "n_sensors", remedy)
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
-        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), as_seed(seed))
+        simulated = calibration(Noise(n_sensors), None, _arl0(arl0), as_seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
         return monitor
 

@@ -1,19 +1,22 @@
 """Thresholds of the statistics, by simulation.
 
 What a reference makes of readings is standard normal whatever the readings were like, so that
-streams of normal noise, with as much memory as the readings have, stand for all. Each is watched by
-statistics whose reference was learned from a baseline of its own, of the length of the user's: what
-a reference does not know well is in the thresholds.
+streams of normal noise, with as much memory and slow noise as the readings have, stand for all.
+Each is watched by statistics whose reference was learned from a baseline of its own, of the length
+of the user's: what a reference does not know well is in the thresholds.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from rga.arrays import FloatArray
-from rga.detection.baseline.baseline_model import Reference
+from rga.detection.baseline.autoregression import predictors
+from rga.detection.baseline.baseline_model import Reference, medians
+from rga.detection.baseline.slow_noise import SLOW
 from rga.detection.statistic import STATISTICS
 
 #: streams, and rows of each at least and at most
@@ -29,6 +32,10 @@ LEAST_SCALE = 0.1
 MEMORIES = (0.0, 0.3, 0.6, 0.8, 0.9, 0.95)
 #: that stand for readings whose memory is larger by so much at most
 WITHIN = 0.05
+#: variances of sums of scores, over those of independent ones, for which streams are simulated,
+#: and the part by which those are larger at most that they stand for
+LONG_RUNS = (1.0, 1.25, 1.5, 2.0, 3.0, 5.0)
+ABOUT = 0.08
 
 SHARES = np.array([statistic.share for statistic in STATISTICS])
 
@@ -60,10 +67,29 @@ class TailModel:
         return float(-np.expm1(-np.exp(-height) * rows / self.rows))
 
 
+class Noise(NamedTuple):
+    """What streams without a change are like.
+
+    Attributes:
+        sensors: in a row.
+        memory: correlation of a reading with the one before.
+        long_run: variance that sums have beyond that memory, over that without slow noise.
+    """
+
+    sensors: int
+    memory: float = 0.0
+    long_run: float = 1.0
+
+    @classmethod
+    def like(cls, sensors: int, memory: float, long_run: float) -> "Noise":
+        """That which streams are simulated with for readings of such noise."""
+        nearest = (one for one in MEMORIES if memory <= one + WITHIN)
+        slow = (one for one in LONG_RUNS if long_run <= one * (1.0 + ABOUT))
+        return cls(sensors, next(nearest, MEMORIES[-1]), next(slow, LONG_RUNS[-1]))
+
+
 @lru_cache(maxsize=64)
-def calibration(
-    sensors: int, baseline_rows: int | None, memory: float, arl0: float, seed: int
-) -> TailModel:
+def calibration(noise: Noise, baseline_rows: int | None, arl0: float, seed: int) -> TailModel:
     """Simulate streams without a change.
 
     Every statistic has a tail of its own, which gives it a scale of heights: logs of how rare a
@@ -71,9 +97,8 @@ def calibration(
     moves it, and is found from streams as a whole, since large values come in clusters.
 
     Args:
-        sensors: in a row.
+        noise: of the streams.
         baseline_rows: rows that a reference is learned from; None: it is known.
-        memory: correlation of a reading with the one before.
         arl0: rows between false alarms that thresholds will be asked for.
         seed: of the simulation.
     """
@@ -81,9 +106,7 @@ def calibration(
     peaks = logs(
         np.concatenate(
             [
-                simulated_peaks(
-                    sensors, baseline_rows, memory, block, np.random.default_rng(sequence)
-                )
+                simulated_peaks(noise, baseline_rows, block, np.random.default_rng(sequence))
                 for sequence in np.random.SeedSequence(seed).spawn(STREAMS)
             ]
         )
@@ -123,27 +146,25 @@ def heights(peaks: FloatArray, location: FloatArray, scale: FloatArray) -> Float
 
 
 def simulated_peaks(
-    sensors: int,
-    baseline_rows: int | None,
-    memory: float,
-    block: int,
-    generator: np.random.Generator,
+    noise: Noise, baseline_rows: int | None, block: int, generator: np.random.Generator
 ) -> FloatArray:
     """The largest values of the statistics in the blocks of a stream without a change.
 
     Args:
-        sensors, baseline_rows, memory: as above.
+        noise, baseline_rows: as above.
         block: rows.
         generator: of random numbers.
 
     Returns:
         float[BLOCKS, statistics]
     """
-    draw = CalibrationNoise(sensors, memory, generator)
+    draw = CalibrationNoise(noise, generator)
     if baseline_rows is None:
-        reference = Reference.known(sensors)
+        reference = Reference.known(noise.sensors)
     else:
-        reference = Reference.learn(draw.rows(baseline_rows))
+        # A memory that had learned of slow noise as well would leave less of it than was found.
+        fast, slow = draw.parts(baseline_rows)
+        reference = Reference.learn(fast + slow, predictors(fast - medians(fast)))
     statistics = reference.statistics(np.full(len(STATISTICS), np.inf), 0)
     peaks = np.empty((BLOCKS, len(STATISTICS)))
     for own in peaks:
@@ -156,25 +177,51 @@ class CalibrationNoise:
     """A stream of normal noise in which each reading goes with the one before.
 
     Args:
-        sensors: in a row.
-        memory: correlation with the row before.
+        noise: what it is like.
         generator: of random numbers.
     """
 
-    def __init__(self, sensors: int, memory: float, generator: np.random.Generator) -> None:
-        self._memory, self._generator = memory, generator
-        self._last = generator.standard_normal((1, sensors)) / np.sqrt(1.0 - memory**2)
+    def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
+        self._noise, self._generator = noise, generator
+        # Where sums of slow noise vary as they should, it has this deviation itself.
+        self._size = np.sqrt((noise.long_run - 1.0) * (1.0 - SLOW) / (1.0 + SLOW))
+        shape = 1, noise.sensors
+        self._fast = generator.standard_normal(shape) / np.sqrt(1.0 - noise.memory**2)
+        self._steps, self._slow = np.zeros(shape), np.zeros(shape)
+        if self._size:
+            self._steps = self._size * generator.standard_normal(shape)
 
     def rows(self, count: int) -> FloatArray:
         """The next rows, float[count, sensors]."""
-        steps = self._generator.standard_normal((count, self._last.shape[1]))
-        if self._memory == 0.0:
-            return steps
-        found, self._last = scipy.signal.lfilter(
-            [1.0], [1.0, -self._memory], steps, axis=0, zi=self._memory * self._last
-        )
-        self._last = self._last / self._memory
-        return np.asarray(found)
+        fast, slow = self.parts(count)
+        return fast + slow
+
+    def parts(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """What memory explains of the next rows, and slow noise, float[count, sensors] each."""
+        shape, memory = (count, self._noise.sensors), self._noise.memory
+        fast, self._fast = remembering(self._generator.standard_normal(shape), memory, self._fast)
+        if not self._size:
+            return fast, np.zeros(shape)
+        steps = self._size * np.sqrt(1.0 - SLOW**2) * self._generator.standard_normal(shape)
+        steps, self._steps = remembering(steps, SLOW, self._steps)
+        slow, self._slow = remembering(steps, memory, self._slow)
+        return fast, slow
+
+
+def remembering(
+    steps: FloatArray, memory: float, before: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Each of steps, float[n, sensors], and so much of what came before; and the last of these.
+
+    Args:
+        steps: what is added in each row.
+        memory: share of a row that the next one keeps.
+        before: the row before them, float[1, sensors].
+    """
+    if memory == 0.0:
+        return steps, before
+    found, _ = scipy.signal.lfilter([1.0], [1.0, -memory], steps, axis=0, zi=memory * before)
+    return np.asarray(found), np.asarray(found[-1:])
 
 
 def memory_of(weights: FloatArray) -> float:
@@ -184,8 +231,3 @@ def memory_of(weights: FloatArray) -> float:
         weights: that predict a reading from the ones before, float[order, sensors].
     """
     return float(np.quantile(weights.sum(axis=0), 0.9))
-
-
-def simulated_memory(memory: float) -> float:
-    """The memory that streams are simulated with for readings of such memory."""
-    return next((one for one in MEMORIES if memory <= one + WITHIN), MEMORIES[-1])

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.stats import binomtest
+from scipy.signal import lfilter
+from scipy.stats import binomtest, poisson
 
 from rga.detection import SyncMonitor
 from unchanged_streams import BASELINE, MISSING, SENSORS, WORLDS, noise
@@ -44,3 +45,20 @@ def test_readings_missing_at_random_raise_no_alarm(world: str) -> None:
         alarms += bool(monitor.update_many(rows[BASELINE:])[-1])
     # One in ten is to be expected.
     assert alarms <= 7
+
+
+def test_noise_too_slow_for_a_memory_raises_no_more_alarms() -> None:
+    """A twentieth of the variance lives for 14 rows: an autoregression does not see it."""
+    arl0, rows, draws, alarms = 2_000, 12_000, 6, 0
+    for draw in range(draws):
+        generator = np.random.default_rng(700 + draw)
+        fast, steps = generator.standard_normal((2, 4_000 + rows, SENSORS))
+        slow = np.sqrt(1 - 0.93**2) * lfilter([1.0], [1.0, -0.93], steps, axis=0)
+        readings = fast + 0.22 * slow
+        monitor = SyncMonitor(readings[:4_000], arl0=arl0)
+        for packet in np.split(readings[4_000:], rows // 50):
+            if monitor.update_many(packet)[-1]:
+                alarms += 1
+                monitor.begin_again()
+    low, high = poisson.interval(0.99, draws * rows / arl0)
+    assert low / 2 <= alarms <= high

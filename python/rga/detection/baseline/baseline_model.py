@@ -66,7 +66,7 @@ class Reference:
         return cls(zero, none, one, zero, one, none, none, np.eye(sensors), signature, LARGEST)
 
     @classmethod
-    def learn(cls, baseline: FloatArray) -> "Reference":
+    def learn(cls, baseline: FloatArray, weights: FloatArray | None = None) -> "Reference":
         """Learn from readings during which nothing changed.
 
         Level, memory (autoregression), the distribution of what memory leaves, and what sensors
@@ -74,10 +74,12 @@ class Reference:
 
         Args:
             baseline: float[rows, sensors], NaN where missing; none of the sensors `unwatched`.
+            weights: of earlier deviations, where they are known, float[order, sensors].
         """
         level = medians(baseline)
         deviations = baseline - level
-        weights = predictors(deviations)
+        if weights is None:
+            weights = predictors(deviations)
         innovations = after_prediction(deviations, weights)
         units, offset, slope, knots, bends, largest = fit_normal_scores(innovations)
         none = np.eye(len(level))
