@@ -1,9 +1,11 @@
-"""Modes of a model by textbook matrices and a dense eigenvalue solver: nothing of the product."""
+"""Modes and motion of a model by textbook matrices and dense solvers: nothing of the product."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.linalg import eigh
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.model import Model
 
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
@@ -16,6 +18,28 @@ def dense_modes(model: Model) -> FloatArray:
 
 def dense_mode_shapes(model: Model, count: int | None) -> tuple[FloatArray, FloatArray]:
     """The lowest of these, or all, with their shapes: float[modes], float[modes, dofs]."""
+    stiffness, mass, free = _matrices(model)
+    # 1 / w^2 and not w^2: what has no mass is at zero, not beyond all bounds.
+    largest, vectors = eigh(mass[np.ix_(free, free)], stiffness[np.ix_(free, free)])
+    heavy = np.flatnonzero(largest > 1e-9 * largest.max())[::-1][:count]
+    shapes = np.zeros((len(heavy), len(stiffness)))
+    shapes[:, free] = vectors[:, heavy].T
+    return np.asarray(1 / np.sqrt(largest[heavy]) / (2 * np.pi)), shapes
+
+
+def dense_motion(model: Model, forces: Mapping[str, Sequence[float]]) -> FloatArray:
+    """Motion of all nodes [m, rad] under forces on some [N], float[nodes, 6]."""
+    stiffness, _, free = _matrices(model)
+    pushed = np.zeros(len(stiffness))
+    for node, force in forces.items():
+        pushed[6 * list(model.nodes).index(node) + np.arange(3)] = force
+    motion = np.zeros(len(stiffness))
+    motion[free] = np.linalg.solve(stiffness[np.ix_(free, free)], pushed[free])
+    return motion.reshape(-1, 6)
+
+
+def _matrices(model: Model) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Stiffness and mass of all degrees of freedom, and which of these are free."""
     numbers = {name: 6 * at for at, name in enumerate(model.nodes)}
     size = 6 * len(numbers)
     stiffness, mass = np.zeros((size, size)), np.zeros((size, size))
@@ -39,12 +63,7 @@ def dense_mode_shapes(model: Model, count: int | None) -> tuple[FloatArray, Floa
     out_of_plane = {"xy": (2, 3, 4), "xz": (1, 3, 5), "yz": (0, 4, 5), None: ()}[model.plane]
     held += [at + dof for at in numbers.values() for dof in out_of_plane]
     free = np.setdiff1d(np.flatnonzero(stiffness.diagonal() > 0), held)
-    # 1 / w^2 and not w^2: what has no mass is at zero, not beyond all bounds.
-    largest, vectors = eigh(mass[np.ix_(free, free)], stiffness[np.ix_(free, free)])
-    heavy = np.flatnonzero(largest > 1e-9 * largest.max())[::-1][:count]
-    shapes = np.zeros((len(heavy), size))
-    shapes[:, free] = vectors[:, heavy].T
-    return np.asarray(1 / np.sqrt(largest[heavy]) / (2 * np.pi)), shapes
+    return stiffness, mass, free
 
 
 def _member(model: Model, member: object) -> tuple[FloatArray, FloatArray]:

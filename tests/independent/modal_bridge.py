@@ -140,6 +140,14 @@ def measured(
     seed: int, hidden: Hidden, modes: int = 6, windows: int = 40
 ) -> tuple[Model, ModalRecord]:
     """The truss that an analyst holds, and the modes that were found in windows of an hour."""
+    content, record = described(seed, hidden, modes, windows)
+    return read_model(content, "bridge"), record
+
+
+def described(
+    seed: int, hidden: Hidden, modes: int = 6, windows: int = 40
+) -> tuple[dict[str, Any], ModalRecord]:
+    """The same with the truss as a model file."""
     rng = np.random.default_rng(seed)
     scatter = np.random.default_rng(seed + 1000)
     content = bridge()
@@ -199,4 +207,4 @@ def measured(
     content["sensors"] = {
         f"f {name}": {"kind": "frequency", "mode": name, "unit": "Hz"} for name in content["modes"]
     }
-    return read_model(content, "bridge"), record
+    return content, record

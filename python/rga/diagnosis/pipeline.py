@@ -26,6 +26,11 @@ from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.fallback import spared
+from rga.diagnosis.mixed.fit import MixedEvidence
+from rga.diagnosis.mixed.readings import modes_beside
+from rga.diagnosis.mixed.search import search as search_both
+from rga.diagnosis.mixed.told import ToldModes
+from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.preparation.prepare import PreparedRecord, prepare
 from rga.diagnosis.residuals import patterns
 from rga.diagnosis.residuals.curvature import curves, free_channels
@@ -53,6 +58,7 @@ from rga.model import Model, as_model
 from rga.numerics.seeds import as_seed
 from rga.provenance import versions
 from rga.records import Record, RecordMapping, RecordSource
+from rga.records.modal.record import ModalRecord
 from rga.simulation import Simulator
 
 Progress = Callable[[str, float], None]
@@ -67,11 +73,15 @@ def diagnose(
     mapping: str | Path | RecordMapping | None = None,
     parts: Model | None = None,
     calm: Record | None = None,
+    modal: ModalRecord | str | Path | None = None,
     criteria: Criteria | str | Path | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Findings:
     """Diagnose what a model gets wrong of a record.
+
+    Natural frequencies and mode shapes of the same structure add what gauges do not show: what is
+    lateral, what is mass, and whether stiffness or load is off.
 
     Args:
         model: the structure with its effects and sensors, or its file.
@@ -81,6 +91,8 @@ def diagnose(
             them; None: this one.
         calm: measured rows in which nothing acts that is looked for, so that the scatter shows
             there as it is; None: it is estimated from all rows, beside causes.
+        modal: modes found in windows of time, or their file (`load_modal_record`); contexts that
+            it lacks are those of the record at the time. None: there are none.
         criteria: what decides the verdict, or their file; None: the default ones.
         seed: of the bootstrap of the gain.
         progress: called with a stage and the share of it that is done.
@@ -90,13 +102,14 @@ def diagnose(
 
     Raises:
         InputError: a file cannot be used, the record is too short, the model cannot be simulated,
-            or the seed is none.
+            clocks of record and modes cannot be compared, or the seed is none.
     """
     tell_progress = progress or (lambda stage, done: None)
     model, seed = as_model(model), as_seed(seed)
     record, chosen = as_record(record, model, mapping), as_criteria(criteria)
+    modes = None if modal is None else modes_beside(model, record, modal)
     with threadpool_limits(1):
-        return _diagnose(model, parts or model, record, calm, chosen, seed, tell_progress)
+        return _diagnose(model, parts or model, record, calm, modes, chosen, seed, tell_progress)
 
 
 def _diagnose(
@@ -104,6 +117,7 @@ def _diagnose(
     parts: Model,
     record: Record,
     calm: Record | None,
+    modal: ModalLikelihood | None,
     criteria: Criteria,
     seed: int,
     progress: Progress,
@@ -142,6 +156,11 @@ def _diagnose(
         _confirmed(found, screening, progress), start, whole, seed, reweighed
     )
     progress("leaving out channels", 1.0)
+    told: ToldModes | None = None
+    if modal is not None:
+        evidence = MixedEvidence(found.problem, base, modal)
+        mixed = search_both(found, evidence, screening, criteria, progress)
+        found, told = mixed.found, ToldModes(mixed, prepared.record)
     failed: list[str] = []
     no_explanations: list[Tried] = []
     tried = spared(
@@ -164,10 +183,11 @@ def _diagnose(
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
     unseen = gaps_left_out(found)
+    by_modes = told is not None and told.by_modes
     reasons = reasons_for_doubt(
-        record.sensors, prepared.faults, found, dropped, off, gained, unseen
+        record.sensors, prepared.faults, found, dropped, off, gained, unseen, by_modes
     )
-    reasons = [*prepared.doubts, *reasons]
+    reasons = [*prepared.doubts, *reasons, *([] if told is None else told.doubts())]
     reasons += [
         f"channel {name} answers the loads in a way of its own, likelier than causes that would "
         "move other channels too: no cause was looked for in it"
@@ -220,6 +240,8 @@ def _diagnose(
         versions=versions(),
     )
     findings._account = account
+    if told is not None:
+        findings = told.told(findings, model, extended, tried)
     progress("done", 1.0)
     return findings
 

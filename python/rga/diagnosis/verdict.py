@@ -38,6 +38,7 @@ def reasons_for_doubt(
     off: Sequence[Misfit],
     gained: Gain,
     unseen: tuple[float, float] | None,
+    by_modes: bool = False,
 ) -> list[str]:
     """In words: why neither the model nor the causes account for the record.
 
@@ -50,6 +51,7 @@ def reasons_for_doubt(
         gained: gap of the held-out rows.
         unseen: gap of channels left out that speak against the causes of the structure, without
             these and with them.
+        by_modes: modes name a cause, which the record need not show.
     """
     fallen = [
         f"{place_words([one.kind.title, *one.place.values()])}"
@@ -66,7 +68,8 @@ def reasons_for_doubt(
     criteria = found.problem.criteria.fit
     if len(broken) >= criteria.broken_share * len(channels):
         reasons.append(f"{len(broken)} of {len(channels)} channels do not work")
-    if found.fit.hypotheses and gained.after >= gained.before:
+    least = gained.before * (criteria.unseen_rise if by_modes else 1.0)
+    if found.fit.hypotheses and gained.after >= least:
         reasons.append(
             "rows that no step saw come no closer by the causes: their gap is "
             f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"

@@ -142,6 +142,8 @@ class Findings(FindingsPart):
     Attributes:
         misfits: sensors that work and do not fit the extended model as their like do.
         criteria: what decided the verdict; of findings that state none the default ones.
+        record_sha256: hash of the file of the record, or of modes that were looked at alone.
+        modal_sha256: hash of the file of modes that were looked at beside a record.
     """
 
     rga_findings: Literal[1] = 1
@@ -159,6 +161,7 @@ class Findings(FindingsPart):
     seed: int
     model_sha256: str
     record_sha256: str
+    modal_sha256: str | None = None
     versions: dict[str, str] = Field(default_factory=dict)
 
     _account: DiagnosisArrays | None = PrivateAttr(default=None)
@@ -170,6 +173,11 @@ class Findings(FindingsPart):
         if self._account is None:
             raise ValueError("these findings were read from a file: the arrays are not kept there")
         return self._account
+
+    @property
+    def has_record(self) -> bool:
+        """Whether the arrays of a record are behind the findings."""
+        return self._account is not None
 
     @property
     def modes(self) -> ModalArrays | None:

@@ -28,7 +28,7 @@ ModalFile = Annotated[
     typer.Option(
         "--modal",
         metavar="FILE",
-        help="Natural frequencies and mode shapes found in windows of time, in place of a record.",
+        help="Natural frequencies and mode shapes in windows of time, beside a record or alone.",
     ),
 ]
 
@@ -44,79 +44,41 @@ def diagnose(
     json: JsonTarget = None,
     pdf: PrintPdf = False,
 ) -> None:
-    """Diagnose what the model gets wrong of a record, or of measured modes."""
-    if bool(record) == (modal is not None):
-        raise InputError(
-            "a record and modes cannot be diagnosed together"
-            if record
-            else "there is nothing to compare the model with",
-            "rga diagnose",
-            "give a RECORD, or measured modes with --modal",
-        )
-    if modal is not None:
-        if mapping is not None:
-            raise InputError("a modal record is read without a mapping", "--import", "leave it out")
-        _diagnose_modes(model, modal, output, criteria, seed, json, pdf)
-    else:
-        _diagnose_record(model, record or [], output, mapping, criteria, seed, json, pdf)
-
-
-def _diagnose_record(
-    model: Path,
-    record: list[Path],
-    output: Path,
-    mapping: Path | None,
-    criteria: Path | None,
-    seed: int,
-    target: str | None,
-    pdf: bool,
-) -> None:
+    """Diagnose what the model gets wrong of a record, of measured modes, or of both together."""
     from rga.cli.output import check_targets
     from rga.cli.reading import read_record
     from rga.findings.criteria import load_criteria
     from rga.model import load_model
     from rga.outputs import check_outputs
-
-    structure = load_model(model)
-    chosen = None if criteria is None else load_criteria(criteria)
-    measured = read_record(record, structure, mapping)
-    check_outputs(output)
-    check_targets(target)
-    # Not needed before the input is known to be good, and slow to import.
-    from rga.diagnosis import diagnose
-
-    def found(progress: "Progress") -> "Findings":
-        return diagnose(structure, measured, criteria=chosen, seed=seed, progress=progress)
-
-    _write(output, found, measured.warnings, target, pdf)
-
-
-def _diagnose_modes(
-    model: Path,
-    modal: Path,
-    output: Path,
-    criteria: Path | None,
-    seed: int,
-    target: str | None,
-    pdf: bool,
-) -> None:
-    from rga.cli.output import check_targets
-    from rga.findings.criteria import load_criteria
-    from rga.model import load_model
-    from rga.outputs import check_outputs
     from rga.records.modal.read import load_modal_record
 
+    if not record and modal is None:
+        raise InputError(
+            "there is nothing to compare the model with",
+            "rga diagnose",
+            "give a RECORD, measured modes with --modal, or both",
+        )
+    if not record and mapping is not None:
+        raise InputError("a modal record is read without a mapping", "--import", "leave it out")
     structure = load_model(model)
     chosen = None if criteria is None else load_criteria(criteria)
-    measured = load_modal_record(modal, structure)
+    measured = read_record(record, structure, mapping) if record else None
+    modes = None if modal is None else load_modal_record(modal, structure)
     check_outputs(output)
-    check_targets(target)
+    check_targets(json)
+    # Not needed before the input is known to be good, and slow to import.
+    from rga.diagnosis import diagnose as of_record
     from rga.diagnosis import diagnose_modes
 
     def found(progress: "Progress") -> "Findings":
-        return diagnose_modes(structure, measured, criteria=chosen, seed=seed, progress=progress)
+        if measured is not None:
+            return of_record(
+                structure, measured, modal=modes, criteria=chosen, seed=seed, progress=progress
+            )
+        assert modes is not None  # one of both was given
+        return diagnose_modes(structure, modes, criteria=chosen, seed=seed, progress=progress)
 
-    _write(output, found, [], target, pdf)
+    _write(output, found, measured.warnings if measured is not None else [], json, pdf)
 
 
 def _write(

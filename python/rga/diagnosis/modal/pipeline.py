@@ -4,15 +4,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import scipy
 from threadpoolctl import threadpool_limits
 
-from rga.arrays import FloatArray
 from rga.diagnosis.assemble.effects import cause_name, content
+from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
+from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
 from rga.diagnosis.modal.doubts import thin, warnings_of, weather
-from rga.diagnosis.modal.fit import ModalFit, fitted, predicted
+from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.search import ModalFound, search
@@ -20,15 +20,11 @@ from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
-from rga.findings.modal_arrays import ModalArrays, ModeReading
+from rga.findings.modal_arrays import ModalArrays
 from rga.findings.phrases import effect_words, place_words
 from rga.findings.schema import (
     Cause,
     Explanation,
-    Gap,
-    GroupGap,
-    HeldOut,
-    SensorGap,
     Unexplained,
     Unidentifiable,
     Verdict,
@@ -42,8 +38,6 @@ from rga.records.modal.read import load_modal_record
 from rga.records.modal.record import ModalRecord
 
 Progress = Callable[[str, float], None]
-#: of intervals
-CONFIDENCE = 0.9
 #: decimals of log-odds
 DECIMALS = 2
 
@@ -106,14 +100,14 @@ def _diagnosed(
     extended = model.extended({cause_name(model, effect): effect for effect in effects})
     findings = Findings(
         verdict=_verdict(found, bool(doubts), criteria),
-        gap=_gap(model, likelihood, (nothing, after), left_out.before, left_out.after),
+        gap=mode_gap(model, likelihood, (nothing, after), left_out.before, left_out.after),
         causes=_causes(likelihood, found, effects, criteria),
         unidentifiable=_unidentifiable(found.first, criteria),
         unexplained=Unexplained(
             share=_share_left(likelihood, nothing, after), looks_like="; ".join(doubts)
         ),
         explanations=_explanations(likelihood, found, criteria),
-        groups=_groups(model, likelihood, nothing, after),
+        groups=mode_groups(model, likelihood, nothing, after),
         warnings=warnings_of(model, readings),
         criteria=criteria,
         seed=seed,
@@ -122,7 +116,7 @@ def _diagnosed(
         versions=versions(),
     )
     findings._modes = ModalArrays(
-        model, extended, _mode_readings(likelihood, nothing, after), readings.time
+        model, extended, mode_readings(likelihood, nothing, after), readings.time
     )
     progress("done", 1.0)
     return findings
@@ -185,49 +179,23 @@ def _causes(
                 rivals=listed[: criteria.rivals.listed],
                 rivals_omitted=max(0, len(listed) - criteria.rivals.listed),
                 separated_by=words,
-                why=_why(likelihood, found, number),
+                why=moved_modes(likelihood, found.fit, number),
             )
         )
     return causes
 
 
-def _change(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> FloatArray:
-    """What a cause changes of the whitened residual, beside the others."""
-    others = [one for k, one in enumerate(fit.hypotheses) if k != number]
-    z = np.delete(fit.z, fit.of(number))
-    without = predicted(likelihood, others, z)
-    if without is None:
-        return np.zeros_like(fit.residual)
-    return np.asarray(likelihood.residual(without) - fit.residual)
-
-
 def _sizes(likelihood: ModalLikelihood, found: ModalFound, number: int) -> tuple[float, float]:
     """d' of a cause, and d' after projecting off its nearest rival."""
-    own = _change(likelihood, found.fit, number)
+    own = change(likelihood, found.fit, number)
     size = float(np.linalg.norm(own))
     if not found.rivals[number]:
         return size, size
     rival = found.rivals[number][0][0]
-    other = _change(likelihood, rival, len(rival.hypotheses) - 1)
+    other = change(likelihood, rival, len(rival.hypotheses) - 1)
     length = float(other @ other)
     rest = own - other * (float(own @ other) / length) if length > 0 else own
     return size, float(np.linalg.norm(rest))
-
-
-def _why(likelihood: ModalLikelihood, found: ModalFound, number: int) -> str:
-    """The modes in which a cause shows most."""
-    others = [one for k, one in enumerate(found.fit.hypotheses) if k != number]
-    without = predicted(likelihood, others, np.delete(found.fit.z, found.fit.of(number)))
-    after = found.fit.prediction
-    if without is None or after is None:
-        return ""
-    moved = np.expm1((after.log_f - without.log_f)[-1])
-    most = np.argsort(-np.abs(moved))[:5]
-    names = likelihood.readings.modes
-    shown = [
-        f"{names[k]} ({moved[k]:+.1%})" for k in most if abs(moved[k]) > 0.1 * abs(moved).max()
-    ]
-    return f"it moves {', '.join(shown)}"
 
 
 def _unidentifiable(first: list[ModalProspect], criteria: Criteria) -> list[Unidentifiable]:
@@ -272,82 +240,7 @@ def _explanations(
     return sorted(explanations, key=lambda one: -one.log_odds)
 
 
-def _gap(
-    model: Model,
-    likelihood: ModalLikelihood,
-    ends: tuple[Prediction, Prediction],
-    before: FloatArray,
-    after: FloatArray,
-) -> Gap:
-    own = [squares(likelihood, one) for one in ends]
-    modes = likelihood.readings.modes
-    by_sensor = {
-        name: SensorGap(before=float(own[0][at]), after=float(own[1][at]))
-        for name, sensor in model.modal_sensors.items()
-        if sensor.point is None and sensor.mode in modes
-        for at in [modes.index(sensor.mode)]
-    }
-    gains = before - after
-    wide = 0.0
-    if len(gains) > 1:
-        quantile = float(scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, len(gains) - 1))
-        wide = quantile * float(gains.std(ddof=1)) / np.sqrt(len(gains))
-    middle = float(gains.mean())
-    return Gap(
-        before=float(own[0].mean()),
-        after=float(own[1].mean()),
-        unit="mean squared deviation of frequencies over what noise and a right model leave",
-        held_out=HeldOut(
-            before=float(before.mean()),
-            after=float(after.mean()),
-            gain=middle,
-            gain_ci90=(middle - wide, middle + wide),
-        ),
-        by_sensor=by_sensor,
-    )
-
-
-def _groups(
-    model: Model, likelihood: ModalLikelihood, before: Prediction, after: Prediction
-) -> list[GroupGap]:
-    """Every mode, as per cent that is measured beyond what is simulated."""
-    ends = [np.expm1(likelihood.mean_off(one)) for one in (before, after)]
-    return [
-        GroupGap(
-            group=f"mode {mode}",
-            sensors=[name for name, one in model.modal_sensors.items() if one.mode == mode],
-            before_percent=float(100 * ends[0][at]),
-            after_percent=float(100 * ends[1][at]),
-        )
-        for at, mode in enumerate(likelihood.readings.modes)
-    ]
-
-
 def _share_left(likelihood: ModalLikelihood, before: Prediction, after: Prediction) -> float:
     """Share of the squared deviations that is left."""
     first, last = (float(squares(likelihood, one).sum()) for one in (before, after))
     return min(1.0, last / first) if first > 0 else 0.0
-
-
-def _mode_readings(
-    likelihood: ModalLikelihood, before: Prediction, after: Prediction
-) -> list[ModeReading]:
-    readings, trials = likelihood.readings, likelihood.trials
-    points = list(trials.model.points)
-    return [
-        ModeReading(
-            name=name,
-            frequency=look.near,
-            scatter=float(readings.scatter[at]),
-            found=float(readings.found[at]),
-            points=[points[number] for number in look.at],
-            shape=look.shape,
-            log_f=readings.log_f[:, at],
-            before=before.log_f[:, at],
-            after=after.log_f[:, at],
-            mac=(float(before.mac[at]), float(after.mac[at])),
-            number=(int(before.number[at]) + 1, int(after.number[at]) + 1),
-            shapes=(before.shapes[at], after.shapes[at]),
-        )
-        for at, (name, look) in enumerate(zip(readings.modes, readings.looks, strict=True))
-    ]

@@ -25,7 +25,7 @@ def separating(likelihood: ModalLikelihood, one: ModalFit, other: ModalFit) -> s
             f"an accelerometer at {node} along {axis}: in mode {mode} the two differ there by "
             f"{apart:.0%} of its largest motion"
         )
-    kinds = {fit.hypotheses[-1].name for fit in (one, other)}
+    kinds = {fit.hypotheses[-1].name for fit in (one, other) if fit.hypotheses}
     if kinds <= COMMON and len(kinds) > 1:
         advice.append("a parked truck of known mass, or a static test under a known load")
     return "; or ".join(advice) or "no point of the structure tells them apart by its shapes"

@@ -130,7 +130,7 @@ def weighed(
             progress("weighing rivals", number / len(current.hypotheses))
             without = without_cause(problem, base, current, number)
             odds.append(current.log_evidence - without.log_evidence)
-            alternatives.append(tuple(_alternatives(problem, base, current, number, screening)))
+            alternatives.append(tuple(alternatives_of(problem, base, current, number, screening)))
         found = Found(problem, current, base, tuple(alternatives), tuple(odds))
         likelier = [one[0].fit for one in alternatives if one and one[0].behind < 0]
         ahead = sorted(likelier, key=evidence, reverse=True)
@@ -226,7 +226,7 @@ def _swapped(
     that scatter may be far apart without it.
     """
     last = len(current.hypotheses) - 1
-    for one in _alternatives(problem, base, current, last, screening)[:1]:
+    for one in alternatives_of(problem, base, current, last, screening)[:1]:
         if one.fit.log_evidence > current.log_evidence + WORTH_EXCHANGE:
             better = with_moment(problem, base, one.fit, last)
             return settled_with(base, problem, better)
@@ -366,7 +366,7 @@ def without_cause(problem: Problem, base: Simulator, current: Fit, *numbers: int
     return current.without[key]
 
 
-def _alternatives(
+def alternatives_of(
     problem: Problem,
     base: Simulator,
     current: Fit,

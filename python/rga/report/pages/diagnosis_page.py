@@ -31,6 +31,7 @@ from rga.report.figures.unseen import draw_unseen
 from rga.report.pages.cards import card, generic, moment, plain
 from rga.report.pages.evidence import evidence
 from rga.report.pages.fault_tolerant_parts import part
+from rga.report.pages.modes_section import modes_section
 from rga.report.text.actions import BY_VERDICT, NOT_RULED_OUT, actions
 
 VERDICTS = {
@@ -88,6 +89,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "residuals": part("The map of residuals", draw_residuals, findings)
         if len(record)
         else None,
+        "modes": None if findings.modes is None else part("Modes", modes_section, findings.modes),
         "forces": part("The forces of the members", forces, findings),
         "groups": [
             (
@@ -312,6 +314,8 @@ def provenance(
         found.append(("model file", model.path.name))
     found.append(("model SHA-256", findings.model_sha256 or DASH))
     found.append(("record SHA-256", findings.record_sha256 or DASH))
+    if findings.modal_sha256 is not None:
+        found.append(("modes SHA-256", findings.modal_sha256 or DASH))
     if zero is not None:
         first, last = zero
         found.append(("channels zeroed over", f"{number(first)} to {number(last)} s of the record"))

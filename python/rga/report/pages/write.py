@@ -28,7 +28,7 @@ def write_report(findings: Findings, path: Path) -> Path:
     Raises:
         ValueError: the findings come from a file and carry no arrays to draw.
     """
-    if findings.modes is not None:
+    if findings.modes is not None and not findings.has_record:
         return _write("modal.html.j2", modal_page(findings, findings.modes), path)
     return _write("report.html.j2", page(findings), path)
 

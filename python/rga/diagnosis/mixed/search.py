@@ -1,0 +1,196 @@
+"""The search for causes in a record and in modes: from those of the record on."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
+from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
+from rga.diagnosis.modal.search import MODES_A_CAUSE, UNLIKELY, worth_fitting
+from rga.diagnosis.modal.separating import COMMON
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.diagnosis.search.laplace import Alternative
+from rga.diagnosis.search.screening import Screening
+from rga.diagnosis.search.stepwise import Found, alternatives_of, without_cause
+from rga.findings.criteria import Criteria
+
+#: log-odds that an exchange must gain
+WORTH_EXCHANGE = 1.0
+#: what could stand in the place of a cause by the record alone and is weighed by the modes too
+MOST = 16
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class MixedFound:
+    """What a search ends with.
+
+    Attributes:
+        found: the causes, with rivals and log-odds by record and modes together.
+        evidence: that weighed them.
+        fit: the causes fitted together.
+        rivals: of each cause what could stand in its place, with how far it is behind [log-odds].
+        promising: what modes may show beside the causes of the record, the likeliest first.
+    """
+
+    found: Found
+    evidence: MixedEvidence
+    fit: MixedFit
+    rivals: tuple[tuple[tuple[MixedFit, float], ...], ...]
+    promising: list[ModalProspect]
+
+
+def search(
+    found: Found,
+    evidence: MixedEvidence,
+    screening: Screening,
+    criteria: Criteria,
+    progress: Progress,
+) -> MixedFound:
+    """Find the causes that a record and modes name together.
+
+    Args:
+        found: the causes that the record names.
+        evidence: of the record about these, and of the modes.
+        screening: of what could be wrong, by the record.
+        criteria: what decides a verdict.
+        progress: called with what is done and the share of it.
+    """
+    current = _exchanged(evidence.beside(found.fit), evidence, screening)
+    candidates = modal_hypotheses(evidence.likelihood.trials)
+    naming = criteria.naming
+    modes = len(evidence.likelihood.readings.modes)
+    more = min(naming.most_causes - len(current.hypotheses), max(1, modes // MODES_A_CAUSE))
+    first = promising = _promising(evidence, current, candidates, progress)
+    for number in range(more):
+        if number:
+            promising = _promising(evidence, current, candidates, progress)
+        fits = _fitted(evidence, current, promising)
+        best = max(fits, key=log_evidence, default=current)
+        if best.log_evidence - current.log_evidence < naming.log_odds:
+            break
+        current = _pruned(best, evidence, naming.log_odds)
+    known = found.fit.hypotheses
+    rivals, odds = [], []
+    for number in range(len(current.hypotheses)):
+        progress("weighing rivals", number / len(current.hypotheses))
+        rest = _without(current, evidence, number)
+        odds.append(current.log_evidence - rest.log_evidence)
+        rivals.append(_rivals(current, rest, number, evidence, screening, candidates, known))
+    joined = Found(
+        found.problem,
+        current.static,
+        found.base,
+        tuple(
+            tuple(Alternative(one.hypotheses[-1], one.static, behind) for one, behind in ranked)
+            for ranked in rivals
+        ),
+        tuple(odds),
+    )
+    return MixedFound(joined, evidence, current, tuple(map(tuple, rivals)), first)
+
+
+def log_evidence(one: MixedFit) -> float:
+    return one.log_evidence
+
+
+def _promising(
+    evidence: MixedEvidence,
+    current: MixedFit,
+    candidates: Sequence[Hypothesis],
+    progress: Progress,
+) -> list[ModalProspect]:
+    """What the modes would have beside causes, the likeliest first."""
+    return prospects(
+        evidence.likelihood,
+        candidates,
+        current.modal.hypotheses,
+        current.modal.z,
+        lambda done: progress("looking for causes in the modes", done),
+    )
+
+
+def _fitted(
+    evidence: MixedEvidence, current: MixedFit, promising: Sequence[ModalProspect]
+) -> list[MixedFit]:
+    """The best of these, fitted to the record as well."""
+    return [
+        evidence.fit([*current.hypotheses, one.hypothesis], [*current.z, *one.z])
+        for one in worth_fitting(promising)
+        if not any(one.hypothesis.same_place(other) for other in current.hypotheses)
+    ]
+
+
+def _exchanged(current: MixedFit, evidence: MixedEvidence, screening: Screening) -> MixedFit:
+    """The causes of the record, less those in whose place the modes would have another."""
+    for number in range(len(current.hypotheses)):
+        options = [
+            evidence.beside(one.fit) for one in _of_record(current, number, evidence, screening)
+        ]
+        best = max(options, key=log_evidence, default=current)
+        if best.log_evidence > current.log_evidence + WORTH_EXCHANGE:
+            current = best
+    return current
+
+
+def _of_record(
+    current: MixedFit, number: int, evidence: MixedEvidence, screening: Screening
+) -> list[Alternative]:
+    """What could stand in the place of a cause by the record, the nearest first."""
+    found = alternatives_of(evidence.problem, evidence.base, current.alone, number, screening)
+    return found[:MOST]
+
+
+def _without(current: MixedFit, evidence: MixedEvidence, number: int) -> MixedFit:
+    """The fit anew without one of its hypotheses."""
+    alone = without_cause(evidence.problem, evidence.base, current.alone, number)
+    return evidence.beside(alone)
+
+
+def _pruned(current: MixedFit, evidence: MixedEvidence, least: float) -> MixedFit:
+    """Take out causes that others have made needless."""
+    while current.hypotheses:
+        fits = [_without(current, evidence, number) for number in range(len(current.hypotheses))]
+        best = max(fits, key=log_evidence)
+        if current.log_evidence - best.log_evidence >= least:
+            break
+        current = best
+    return current
+
+
+def _rivals(
+    current: MixedFit,
+    rest: MixedFit,
+    number: int,
+    evidence: MixedEvidence,
+    screening: Screening,
+    candidates: Sequence[Hypothesis],
+    known: Sequence[Hypothesis],
+) -> list[tuple[MixedFit, float]]:
+    """What could stand in the place of a cause beside the others, with how far it is behind.
+
+    By its evidence; for what the modes named, and for what moves all modes alike, by the data alone
+    where that is less: what is usual of moduli, masses and clocks must not tell them apart.
+    """
+    own = current.hypotheses[number]
+    several = [evidence.beside(one.fit) for one in _of_record(current, number, evidence, screening)]
+    if evidence.on_modes([own]):
+        several += _fitted(
+            evidence, rest, _promising(evidence, rest, candidates, lambda stage, done: None)
+        )
+    found: list[tuple[MixedFit, float]] = []
+    for one in several:
+        rival = one.hypotheses[-1]
+        if own.same_place(rival) or any(
+            rival.same_place(other.hypotheses[-1]) for other, _ in found
+        ):
+            continue
+        if not np.isfinite(one.log_evidence):
+            continue
+        behind = current.log_evidence - one.log_evidence
+        alike = {own.name, rival.name} <= COMMON or not any(own.same_place(one) for one in known)
+        if alike and np.abs(one.z[one.static.slices()[-1]]).max(initial=0.0) <= UNLIKELY:
+            behind = min(behind, one.loss - current.loss)
+        found.append((one, behind))
+    return sorted(found, key=lambda pair: pair[1])

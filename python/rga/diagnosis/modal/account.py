@@ -1,0 +1,106 @@
+"""Measured modes beside what is simulated of them, as findings and reports hold them."""
+
+import numpy as np
+import scipy
+
+from rga.arrays import FloatArray
+from rga.diagnosis.modal.checks import squares
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.trials import Prediction
+from rga.findings.modal_arrays import ModeReading
+from rga.findings.schema import Gap, GroupGap, HeldOut, SensorGap
+from rga.model import Model
+
+#: of intervals
+CONFIDENCE = 0.9
+
+
+def by_sensor(
+    model: Model, likelihood: ModalLikelihood, before: Prediction, after: Prediction
+) -> dict[str, SensorGap]:
+    """Squared deviations of the frequencies, over what noise and model may be off."""
+    own = [squares(likelihood, one) for one in (before, after)]
+    modes = likelihood.readings.modes
+    return {
+        name: SensorGap(before=float(own[0][at]), after=float(own[1][at]))
+        for name, sensor in model.modal_sensors.items()
+        if sensor.point is None and sensor.mode in modes
+        for at in [modes.index(sensor.mode)]
+    }
+
+
+def mode_gap(
+    model: Model,
+    likelihood: ModalLikelihood,
+    ends: tuple[Prediction, Prediction],
+    before: FloatArray,
+    after: FloatArray,
+) -> Gap:
+    """The gap of the modes, and of modes that were left out.
+
+    Args:
+        model: with sensors of modes.
+        likelihood: of the modes.
+        ends: without causes and with them.
+        before, after: squared deviations of modes left out, without causes and with them,
+            float[modes].
+    """
+    own = [squares(likelihood, one) for one in ends]
+    gains = before - after
+    wide = 0.0
+    if len(gains) > 1:
+        quantile = float(scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, len(gains) - 1))
+        wide = quantile * float(gains.std(ddof=1)) / np.sqrt(len(gains))
+    middle = float(gains.mean())
+    return Gap(
+        before=float(own[0].mean()),
+        after=float(own[1].mean()),
+        unit="mean squared deviation of frequencies over what noise and a right model leave",
+        held_out=HeldOut(
+            before=float(before.mean()),
+            after=float(after.mean()),
+            gain=middle,
+            gain_ci90=(middle - wide, middle + wide),
+        ),
+        by_sensor=by_sensor(model, likelihood, *ends),
+    )
+
+
+def mode_groups(
+    model: Model, likelihood: ModalLikelihood, before: Prediction, after: Prediction
+) -> list[GroupGap]:
+    """Every mode, as per cent that is measured beyond what is simulated."""
+    ends = [np.expm1(likelihood.mean_off(one)) for one in (before, after)]
+    return [
+        GroupGap(
+            group=f"mode {mode}",
+            sensors=[name for name, one in model.modal_sensors.items() if one.mode == mode],
+            before_percent=float(100 * ends[0][at]),
+            after_percent=float(100 * ends[1][at]),
+        )
+        for at, mode in enumerate(likelihood.readings.modes)
+    ]
+
+
+def mode_readings(
+    likelihood: ModalLikelihood, before: Prediction, after: Prediction
+) -> list[ModeReading]:
+    readings, trials = likelihood.readings, likelihood.trials
+    points = list(trials.model.points)
+    return [
+        ModeReading(
+            name=name,
+            frequency=look.near,
+            scatter=float(readings.scatter[at]),
+            found=float(readings.found[at]),
+            points=[points[number] for number in look.at],
+            shape=look.shape,
+            log_f=readings.log_f[:, at],
+            before=before.log_f[:, at],
+            after=after.log_f[:, at],
+            mac=(float(before.mac[at]), float(after.mac[at])),
+            number=(int(before.number[at]) + 1, int(after.number[at]) + 1),
+            shapes=(before.shapes[at], after.shapes[at]),
+        )
+        for at, (name, look) in enumerate(zip(readings.modes, readings.looks, strict=True))
+    ]
