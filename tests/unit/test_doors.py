@@ -53,10 +53,10 @@ def test_diagnose_takes_files_as_it_takes_objects(
     assert files[0] == files[1] == objects[0] == model
     assert files[0].sha256 == model.sha256
     assert files[2].sha256 == objects[2].sha256
-    assert files[4] == objects[4]
-    assert files[4].record.few_rows == 20
+    assert files[5] == objects[5]
+    assert files[5].record.few_rows == 20
     rga.diagnose(form(model_file), form(record_file))
-    assert given[-1][4] == Criteria()
+    assert given[-1][5] == Criteria()
 
 
 def test_a_record_is_read_against_a_model_or_its_file(model_file: Path, record_file: Path) -> None:

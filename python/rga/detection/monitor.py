@@ -18,7 +18,7 @@ from rga.detection.baseline.stationarity import watched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
-from rga.detection.thresholds import Noise, TailModel, calibration, memory_of
+from rga.detection.thresholds import StreamNoise, TailModel, calibration, memory_of
 from rga.errors import InputError
 from rga.numerics.seeds import as_seed
 
@@ -95,7 +95,9 @@ class SyncMonitor:
         rows = np.ascontiguousarray(given[:, self._watched])
         reference = Reference.learn(rows)
         _, scores = watched(reference, rows)
-        noise = Noise.like(rows.shape[1], memory_of(reference.weights), long_run_variance(scores))
+        noise = StreamNoise.like(
+            rows.shape[1], memory_of(reference.weights), long_run_variance(scores)
+        )
         simulated = calibration(noise, _rounded(len(rows)), _arl0(arl0), as_seed(seed))
         self._begin(reference, simulated, arl0, seed)
         own = [called[column] for column in np.flatnonzero(self._watched).tolist()]
@@ -118,7 +120,7 @@ class SyncMonitor:
             raise InputError(f"{n_sensors!r} sensors", "n_sensors", remedy)
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
-        simulated = calibration(Noise(n_sensors), None, _arl0(arl0), as_seed(seed))
+        simulated = calibration(StreamNoise(n_sensors), None, _arl0(arl0), as_seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
         return monitor
 

@@ -67,7 +67,7 @@ class TailModel:
         return float(-np.expm1(-np.exp(-height) * rows / self.rows))
 
 
-class Noise(NamedTuple):
+class StreamNoise(NamedTuple):
     """What streams without a change are like.
 
     Attributes:
@@ -81,7 +81,7 @@ class Noise(NamedTuple):
     long_run: float = 1.0
 
     @classmethod
-    def like(cls, sensors: int, memory: float, long_run: float) -> "Noise":
+    def like(cls, sensors: int, memory: float, long_run: float) -> "StreamNoise":
         """That which streams are simulated with for readings of such noise."""
         nearest = (one for one in MEMORIES if memory <= one + WITHIN)
         slow = (one for one in LONG_RUNS if long_run <= one * (1.0 + ABOUT))
@@ -89,7 +89,7 @@ class Noise(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def calibration(noise: Noise, baseline_rows: int | None, arl0: float, seed: int) -> TailModel:
+def calibration(noise: StreamNoise, baseline_rows: int | None, arl0: float, seed: int) -> TailModel:
     """Simulate streams without a change.
 
     Every statistic has a tail of its own, which gives it a scale of heights: logs of how rare a
@@ -146,7 +146,7 @@ def heights(peaks: FloatArray, location: FloatArray, scale: FloatArray) -> Float
 
 
 def simulated_peaks(
-    noise: Noise, baseline_rows: int | None, block: int, generator: np.random.Generator
+    noise: StreamNoise, baseline_rows: int | None, block: int, generator: np.random.Generator
 ) -> FloatArray:
     """The largest values of the statistics in the blocks of a stream without a change.
 
@@ -181,7 +181,7 @@ class CalibrationNoise:
         generator: of random numbers.
     """
 
-    def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
+    def __init__(self, noise: StreamNoise, generator: np.random.Generator) -> None:
         self._noise, self._generator = noise, generator
         # Where sums of slow noise vary as they should, it has this deviation itself.
         self._size = np.sqrt((noise.long_run - 1.0) * (1.0 - SLOW) / (1.0 + SLOW))

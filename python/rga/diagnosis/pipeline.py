@@ -156,6 +156,7 @@ def _diagnose(
         _confirmed(found, screening, progress), start, whole, seed, reweighed
     )
     progress("leaving out channels", 1.0)
+    unseen = gaps_left_out(found)
     told: ToldModes | None = None
     if modal is not None:
         evidence = MixedEvidence(found.problem, base, modal)
@@ -182,7 +183,6 @@ def _diagnose(
     share = patterns.share_left(found.problem)
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
-    unseen = gaps_left_out(found)
     by_modes = told is not None and told.by_modes
     reasons = reasons_for_doubt(
         record.sensors, prepared.faults, found, dropped, off, gained, unseen, by_modes

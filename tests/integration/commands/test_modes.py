@@ -10,7 +10,10 @@ import polars as pl
 import pytest
 
 import rga as package
-from rga.model.io import model_content
+from independent.mixed_bridge import mixed
+from independent.modal_bridge import Hidden
+from rga.model.io import model_content, write_model
+from rga.records.modal.record import ModalRecord
 
 
 def expected(way: str, sizes: dict[int, float]) -> dict[str, Any]:
@@ -100,3 +103,36 @@ def test_counts_that_are_none(rga: Callable[..., Any], mast: Path, count: str) -
     done = rga("modes", mast, "--count", count)
     assert done.code == 2
     assert "Traceback" not in done.err
+
+
+def written_modes(modal: ModalRecord) -> str:
+    """Modes as the long table of a file."""
+    lines = [",".join(["time", "f", *modal.points])]
+    rows = zip(modal.time, modal.frequency, modal.shapes, strict=True)
+    lines += [",".join(map(repr, map(float, [time, f, *shape]))) for time, f, shape in rows]
+    return "\n".join(lines) + "\n"
+
+
+def test_a_record_and_modes_are_diagnosed_together(rga: Callable[..., Any], tmp_path: Path) -> None:
+    model, record, modal = mixed(0, Hidden())
+    write_model(model, tmp_path / "model.json")
+    record.write(tmp_path / "record.csv")
+    (tmp_path / "modes.csv").write_text(written_modes(modal))
+    files = tmp_path / "model.json", tmp_path / "record.csv", "--modal", tmp_path / "modes.csv"
+    done = rga("diagnose", *files, "-o", tmp_path / "found")
+    assert done.code == 0, done.err
+    assert "Verdict: nothing_wrong" in done.out
+    findings = json.loads((tmp_path / "found" / "findings.json").read_text())
+    assert findings["modal_sha256"] not in (None, findings["record_sha256"])
+    assert {"f m0", "D b1n"} <= findings["gap"]["by_sensor"].keys()
+    report = (tmp_path / "found" / "report.html").read_text()
+    assert "<h2>Modes</h2>" in report
+    assert "Measured over simulated" in report
+
+
+def test_nothing_to_diagnose_is_refused(
+    rga: Callable[..., Any], mast: Path, tmp_path: Path
+) -> None:
+    done = rga("diagnose", mast, "-o", tmp_path / "found")
+    assert done.code == 2
+    assert "there is nothing to compare the model with" in done.err

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from scipy.stats import poisson
 
 from rga.detection.baseline.baseline_model import Reference
-from rga.detection.thresholds import SHARES, Noise, calibration
+from rga.detection.thresholds import SHARES, StreamNoise, calibration
 
 SENSORS, BLOCK, ROWS = 12, 500, 9_000_000
 SEEDS = range(8)
@@ -32,7 +32,7 @@ def test_false_alarms_are_as_rare_as_set_beyond_the_streams(arl0: float, peaks: 
     low, high = poisson.interval(0.98, expected)
     alarms = []
     for seed in SEEDS:
-        limits = calibration(Noise(SENSORS), None, 10_000.0, seed).thresholds(arl0)
+        limits = calibration(StreamNoise(SENSORS), None, 10_000.0, seed).thresholds(arl0)
         above = (peaks > limits).any(axis=1)
         # Blocks that follow each other are one alarm.
         alarms.append(above[0] + (above[1:] & ~above[:-1]).sum())

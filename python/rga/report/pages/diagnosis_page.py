@@ -106,7 +106,9 @@ def page(findings: Findings) -> dict[str, Any]:
         "over_time": bool(series and series[1]),
         "explanations": part("The table of explanations", explanations, findings),
         "explanations_figure": part("The figure of explanations", draw_explanations, findings),
-        "unseen": part("The channels left out", unseen, findings),
+        "unseen": part("The channels left out", unseen, findings)
+        if findings.modes is None
+        else None,
         "gain_figure": part("The figure of the gain", draw_gain, findings),
         "contexts": part("The table of contexts", contexts, findings),
         "share": percent(100 * findings.unexplained.share, sign=False),

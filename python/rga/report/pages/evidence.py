@@ -36,6 +36,13 @@ def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
     # Faults of channels were reported before what the search found.
     place = findings.causes.index(cause)
     place -= len(findings.causes) - len(found.fit.hypotheses)
+    if findings.modes is not None:
+        return {
+            "profiles": None,
+            "onset": False,
+            "rivalry": None,
+            "caveats": _leads(found, place, cause),
+        }
     rivalry = part("The rival's fit", _rivalry, account, found, place)
     return {
         "profiles": part("The profiles", _profiles, account, found, place, cause),
@@ -43,6 +50,21 @@ def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
         "rivalry": rivalry,
         "caveats": caveats(found, place, cause, account.model, rivalry.lead if rivalry else ""),
     }
+
+
+def _leads(found: Found, place: int, cause: Cause) -> list[str]:
+    """What would change the verdict of a record with modes: no channel decides it alone."""
+    words = [_alone(found, cause)]
+    apart = found.problem.criteria.rivals.log_odds
+    if found.alternatives[place]:
+        behind = number(found.alternatives[place][0].behind)
+        words.append(
+            f"It leads by {behind} log-odds over its nearest rival; below {apart:g} the two cannot "
+            "be separated."
+        )
+    if cause.separated_by:
+        words.append(f"To separate it from its rivals: {cause.separated_by}.")
+    return words
 
 
 @dataclass(frozen=True)
@@ -102,9 +124,8 @@ def caveats(found: Found, place: int, cause: Cause, model: Model, lead: str) -> 
         model: as it was given.
         lead: of the cause over its nearest rival, in words; empty where it has none.
     """
-    alone = f"It leads by {number(cause.log_odds)} log-odds over leaving it out; "
     criteria = found.problem.criteria
-    words = [f"{alone}below {criteria.naming.log_odds:g} it would not be named."]
+    words = [_alone(found, cause)]
     if lead:
         words.append(lead)
     hangs = part("What its lead hangs on", hold, found, place)
@@ -116,6 +137,14 @@ def caveats(found: Found, place: int, cause: Cause, model: Model, lead: str) -> 
     if cause.separated_by:
         words.append(f"To separate it from its rivals: {cause.separated_by}.")
     return words
+
+
+def _alone(found: Found, cause: Cause) -> str:
+    least = found.problem.criteria.naming.log_odds
+    return (
+        f"It leads by {number(cause.log_odds)} log-odds over leaving it out; below {least:g} it "
+        "would not be named."
+    )
 
 
 def _hold_words(one: Hold, criteria: Criteria) -> str:
