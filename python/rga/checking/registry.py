@@ -13,6 +13,7 @@ from rga.checking.of_model.deformations import deformations
 from rga.checking.of_model.duplicates import duplicates
 from rga.checking.of_model.gauges import gauges
 from rga.checking.of_model.loads import loads
+from rga.checking.of_model.masses import masses
 from rga.checking.of_model.materials import materials
 from rga.checking.of_model.mechanisms import mechanisms
 from rga.checking.of_model.sections import sections
@@ -39,6 +40,7 @@ OF_MODEL: tuple[Callable[[OverRanges], Iterable[Finding]], ...] = (
     simulation,
     coordinates,
     materials,
+    masses,
     sections,
     stiffness,
     supports,

@@ -92,6 +92,7 @@ def modes(
     """
     from rga.cli.output import write_json
     from rga.model import load_model
+    from rga.model.mass_budget import mass_budget
     from rga.records.modal.read import load_modal_record
     from rga.simulation import ModalSimulator
     from rga.simulation import modes as modes_of
@@ -101,6 +102,10 @@ def modes(
     found = modes_of(structure, count, given)
     simulator = ModalSimulator(structure) if structure.modes or record is not None else None
     words, content = [], found.content()
+    content["mass_by_part"] = [
+        {"of": one.of, "members": one.members, "beside": one.beside}
+        for one in mass_budget(structure)
+    ]
     if simulator is not None:
         words.append(pairing_words(simulator, *simulator.pair(given)[:2]))
     if simulator is not None and record is not None:
@@ -124,3 +129,6 @@ def modes(
     for one in words:
         typer.echo(one)
     typer.echo(f"Mass that moves along x, y, z: {tons} t, that of held nodes included.")
+    typer.echo(f"{'mass of':32} {'members [t]':>12} {'beside [t]':>12}")
+    for part in mass_budget(structure):
+        typer.echo(f"{part.of:32} {part.members / 1000:12.4g} {part.beside / 1000:12.4g}")

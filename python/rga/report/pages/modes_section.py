@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from rga.findings.modal_arrays import ModalArrays, ModeReading
+from rga.model.mass_budget import mass_budget
 from rga.quantities import DASH, counted, percent
 from rga.report.figures.modes import draw_frequencies, draw_shapes
 
@@ -23,7 +24,16 @@ def modes_section(account: ModalArrays) -> dict[str, Any]:
         figures.append({"svg": over_time, "words": FREQUENCIES})
     windows = f"{counted(len(account.modes), 'mode')} in {counted(len(account.time), 'window')}"
     lines = [_line(one) for one in account.modes]
-    return {"windows": windows, "lines": lines, "figures": figures}
+    budget = [
+        (one.of, _tonnes(one.members), _tonnes(one.beside), _tonnes(one.total))
+        for one in mass_budget(account.model)
+    ]
+    return {"windows": windows, "lines": lines, "figures": figures, "budget": budget}
+
+
+def _tonnes(mass: float) -> str:
+    """A mass [kg] in tonnes."""
+    return f"{mass / 1000:.3g}"
 
 
 def _line(mode: ModeReading) -> dict[str, str]:
