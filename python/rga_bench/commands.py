@@ -266,6 +266,15 @@ def solver(quick: Shorter = False, seed: Seed = 0) -> Experiment[Any]:
     return SolverExperiment.of(seed, quick=quick)
 
 
+@_experiment(WRITTEN)
+def modes(quick: Shorter = False, seed: Seed = 0) -> Experiment[Any]:
+    """What natural frequencies cost, beside other solvers on the same structures."""
+    os.environ["OMP_THREAD_LIMIT"] = "1"  # as for `solver`
+    from rga_bench.modes.experiment import ModesExperiment
+
+    return ModesExperiment.of(seed, quick=quick)
+
+
 @_experiment(WORKERS, WRITTEN)
 def policies(quick: Few = False, seed: Seed = 0) -> Experiment[Any]:
     """What each policy of synchronisation costs, and what gap it leaves."""

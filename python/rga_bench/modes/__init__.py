@@ -1,0 +1,1 @@
+"""What natural frequencies cost, beside other solvers on the same structures."""

@@ -1,0 +1,25 @@
+"""How much is measured."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ModesSetting:
+    """How much is measured, and on what.
+
+    Attributes:
+        seconds: that a figure is measured for.
+        panels: along a side of the double-layer grid.
+        seed: of structures and samples.
+        judged: whether figures are held against their targets.
+    """
+
+    seconds: float = 2.0
+    panels: int = 64
+    seed: int = 0
+    judged: bool = True
+
+
+def shorter(seed: int) -> ModesSetting:
+    """What takes some seconds: too short to judge by."""
+    return ModesSetting(0.05, 12, seed, judged=False)
