@@ -30,6 +30,9 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
     [-] and `mode`, a hint, may be there, and columns named after points and context variables of
     the model. The imaginary part of a shape at point A1 is in a column A1_im.
 
+    A wide table has a line a window, and in place of `f` columns named after modes of the model or
+    after sensors of their frequencies; an empty cell: the mode was not found. It tells no shapes.
+
     Args:
         path: CSV, Parquet or any other format of records.
         model: whose points and contexts name columns.
@@ -39,13 +42,17 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
             that are normalised; an imaginary part stands alone; or no entry is there.
     """
     known = (TIME, DURATION, FREQUENCY, DEVIATION, DAMPING, HINT, *model.points, *model.context)
-    table = read_table(path, known=known)
+    named = modes_of_columns(model)
+    table = read_table(path, known=(*known, *named))
     columns = table.frame.columns
+    if FREQUENCY not in columns and any(name in named for name in columns):
+        return _wide(table, model)
     if FREQUENCY not in columns:
         raise InputError(
             f"there is no column {FREQUENCY!r}",
             f"{table.path}, columns {', '.join(columns[:12])}",
-            "give natural frequencies in Hz in a column f, one line a mode and window",
+            "give natural frequencies in Hz in a column f, one line a mode and window, or columns "
+            "named after the model's modes",
         )
     frequency = table.numbers(FREQUENCY)
     bad = ~(frequency > 0)
@@ -83,6 +90,50 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
             for one in (table.frame[HINT] if HINT in columns else [None] * len(frequency))
         ),
         contexts=contexts,
+        left_out=tuple(name for name in columns if name not in used),
+        sha256=table.sha256,
+    )
+
+
+def modes_of_columns(model: Model) -> dict[str, str]:
+    """The mode whose frequency a column of a wide table has, by the column's name."""
+    sensors = {
+        name: one.mode for name, one in model.modal_sensors.items() if one.kind == "frequency"
+    }
+    return {**sensors, **{name: name for name in model.modes}}
+
+
+def _wide(table: Table, model: Model) -> ModalRecord:
+    """The record of a table with a line a window and a column a mode."""
+    columns, named = table.frame.columns, modes_of_columns(model)
+    chosen = [name for name in columns if name in named]
+    found = np.array([table.numbers(name) for name in chosen]).T
+    bad = found <= 0
+    if bad.any():
+        row, column = np.argwhere(bad)[0]
+        raise InputError(
+            f"{found[row, column]:g} is none",
+            table.where(int(row), chosen[column]),
+            "give frequencies in Hz, not normalised; leave the cell of a mode not found empty",
+        )
+    rows, of = np.nonzero(np.isfinite(found))
+    if not len(rows):
+        raise InputError("no mode was found in any window", str(table.path), "give one that was")
+    time, start = _time(table)
+    nothing = np.full(len(rows), np.nan)
+    used = {TIME, DURATION, *chosen, *model.context}
+    return ModalRecord(
+        time=time[rows],
+        start=start,
+        duration=_above_zero(table, DURATION)[rows],
+        frequency=found[rows, of],
+        frequency_sd=nothing,
+        damping=nothing,
+        points=(),
+        shapes=np.zeros((len(rows), 0)),
+        realness=np.ones(len(rows)),
+        hint=tuple(named[chosen[column]] for column in of),
+        contexts={name: table.numbers(name)[rows] for name in model.context if name in columns},
         left_out=tuple(name for name in columns if name not in used),
         sha256=table.sha256,
     )

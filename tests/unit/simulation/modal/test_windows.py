@@ -8,6 +8,7 @@ import pytest
 
 import rga
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records.modal.read import load_modal_record
 from rga.simulation.modal.simulator import ModalSimulator
@@ -160,3 +161,32 @@ def test_columns_that_are_missing(
     with pytest.raises(rga.InputError, match="there is no") as refused:
         read(frame, tmp_path, model)
     assert told in str(refused.value)
+
+
+def test_a_wide_table_has_a_column_a_mode(model: Model, tmp_path: Path) -> None:
+    file = tmp_path / "wide.csv"
+    file.write_text(
+        "time,f0,m2,air,crew\n2026-03-01T12:00:00,4.01,8.9,3.5,1\n2026-03-01T13:00:00,,9.1,4.5,2\n"
+    )
+    record = load_modal_record(file, model)
+    assert record.frequency.tolist() == [4.01, 8.9, 9.1]
+    assert record.hint == ("m0", "m2", "m2")
+    assert record.time.tolist() == [0.0, 0.0, 3600.0]
+    assert record.contexts["air"].tolist() == [3.5, 3.5, 4.5]
+    assert record.left_out == ("crew",)
+    assert record.shapes.shape == (3, 0)
+    named = named_modes(record, model, ModalSimulator(model).expected)
+    assert named.mode.tolist() == [0, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [("-4.0,9.0", "-4 is none"), (",", "no mode was found"), ("0,9", "0 is none")],
+)
+def test_a_wide_table_without_frequencies_is_refused(
+    model: Model, tmp_path: Path, cells: str, said: str
+) -> None:
+    file = tmp_path / "wide.csv"
+    file.write_text(f"time,m0,m2\n2026-03-01T12:00:00,{cells}\n")
+    with pytest.raises(InputError, match=said):
+        load_modal_record(file, model)
