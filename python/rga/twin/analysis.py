@@ -175,6 +175,10 @@ class RealityGapAnalysis:
         self._refine(recent)
         after, left = gap(*recent), gap(*recent, standing.share)
         changes = calibration.changes(known) if calibration.corrects else None
+        if standing.alarm is not None and expected <= usual and changes == ():
+            # An alarm chose rows that look odd by chance: learned from, they lead astray.
+            calibration.return_to(known, *recent)
+            after, left = before, expected
         rows, novel = f"rows {recent[0]} to {recent[1] - 1}", calibration.novel(*recent)
         inferred = bool(calibration.latent)
         doubted, words = judged(rows, expected, left, usual, changes, novel, inferred=inferred)
@@ -276,8 +280,7 @@ class RealityGapAnalysis:
             return False
         self._refine(rows)
         if calibration.changes(state.estimator):
-            calibration.restore(state.estimator, calibration.sound)
-            calibration.follow(*rows)
+            calibration.return_to(state.estimator, *rows)
         after, words = calibration.rows.gap(*rows), state.taken_up(*rows)
         self.event("recall", standing.row - 1, words, before=before, after=after)
         self._begin_again(None)
@@ -294,8 +297,7 @@ class RealityGapAnalysis:
 
     def _refine(self, recent: tuple[int, int]) -> None:
         """Learn from the latest rows; where that makes the gap larger, return to what was."""
-        calibration = self._calibration
-        if calibration.learned is None:
+        if (calibration := self._calibration).learned is None:
             return
         version = self._exchange.twin.state.version
         stored = self._archive.run.simulated(version=version, origin="novel").contexts
@@ -307,8 +309,7 @@ class RealityGapAnalysis:
         calibration.recalibrate(self.standing.calibrated, recent)
         calibration.follow(*recent)
         if not calibration.rows.gap(*recent) < before:
-            calibration.restore(kept, calibration.sound)
-            calibration.follow(*recent)
+            calibration.return_to(kept, *recent)
 
     def _change_version(self, first: int | None, **change: Any) -> None:
         """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""

@@ -293,6 +293,11 @@ class ContextCapture:
         self._take(learned)
         self.sound = sound
 
+    def return_to(self, learned: ContextEstimator | None, first: int, end: int) -> None:
+        """Take up an earlier estimator, and follow rows by it again."""
+        self.restore(learned, self.sound)
+        self.follow(first, end)
+
     def keep_state(self, first: int, end: int, share: float, doubted: bool) -> None:
         """Keep what infers now, for rows like these, unless it is kept already.
 
