@@ -289,7 +289,10 @@ class Nothing:
     verdict = "nothing_wrong"
     warnings: ClassVar[list[str]] = ["D1 is odd"]
 
-    def __init__(self, model: Any, record: Any, *, criteria: Any, seed: int, progress: Any) -> None:
+    def __init__(
+        self, model: Any, record: Any, *, modal: Any, criteria: Any, seed: int, progress: Any
+    ) -> None:
+        assert modal is None
         progress("screening", 1.0)
         self.content = {"verdict": "nothing_wrong", "seed": seed, "rows": len(record)}
         if criteria is not None:
