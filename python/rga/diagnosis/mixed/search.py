@@ -189,8 +189,9 @@ def _rivals(
         if not np.isfinite(one.log_evidence):
             continue
         behind = current.log_evidence - one.log_evidence
-        alike = {own.name, rival.name} <= COMMON or not any(own.same_place(one) for one in known)
-        if alike and np.abs(one.z[one.static.slices()[-1]]).max(initial=0.0) <= UNLIKELY:
+        near = np.abs(one.z[one.static.slices()[-1]]).max(initial=0.0) <= UNLIKELY
+        by_modes = not any(own.same_place(one) for one in known)
+        if {own.name, rival.name} <= COMMON or (by_modes and near):
             behind = min(behind, one.loss - current.loss)
         found.append((one, behind))
     return sorted(found, key=lambda pair: pair[1])

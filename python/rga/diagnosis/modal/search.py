@@ -8,6 +8,7 @@ import numpy as np
 from rga.diagnosis.modal.candidates import BEGINNINGS, ModalProspect, prospects
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.separating import COMMON
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.findings.criteria import Criteria
 
@@ -158,7 +159,8 @@ def _rivals(
         other = fitted(likelihood, [*others, rival], [*z, *one.z])
         if np.isfinite(other.log_evidence):
             behind = current.log_evidence - other.log_evidence
-            if np.abs(other.z[other.of(len(others))]).max(initial=0.0) <= UNLIKELY:
+            far = np.abs(other.z[other.of(len(others))]).max(initial=0.0) > UNLIKELY
+            if not far or {own.name, rival.name} <= COMMON:
                 behind = min(behind, other.likelihood_loss - current.likelihood_loss)
             found.append((other, behind))
     return sorted(found, key=lambda pair: pair[1])
