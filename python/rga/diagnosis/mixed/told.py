@@ -145,11 +145,13 @@ class ToldModes:
         size, apart = self._sizes(number)
         static = cause.d_prime
         parts = [cause.why] if static >= SHOWS else []
-        separated = cause.separated_by
+        separated, onset_within = cause.separated_by, cause.onset_ci90
         if number in shown:
             at = shown.index(number)
             words = moved_modes(evidence.likelihood, fit.modal, at)
             parts += [words] if words else []
+            # When it began is known by the modes, of which the interval of the record says nothing.
+            onset_within = None if self._shows(at) else onset_within
             if self._shows(at) and self.mixed.rivals[number]:
                 nearest = self.mixed.rivals[number][0][0]
                 against = effect_words(last_effect(nearest.static, self.record))
@@ -162,6 +164,7 @@ class ToldModes:
                 "d_perp": apart,
                 "why": "; ".join(parts),
                 "separated_by": separated,
+                "onset_ci90": onset_within,
             }
         )
 
