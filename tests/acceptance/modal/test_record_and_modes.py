@@ -46,6 +46,10 @@ def wrong_clock() -> Hidden:
     return Hidden(clock=1.01)
 
 
+def fast_clock() -> Hidden:
+    return Hidden(clock=1.1)
+
+
 def stiffer() -> Hidden:
     return Hidden(stiffness=dict.fromkeys(GROUPS, 1.06))
 
@@ -114,3 +118,10 @@ def test_a_cause_of_each_is_named_with_its_size() -> None:
     for place, size in weak_post_and_bracing().stiffness.items():
         low, high = found[place].effect["factor"]["ci90"]
         assert low - 0.05 < size < high + 0.05
+
+
+@thorough
+def test_a_clock_that_is_off_by_a_tenth_stays_a_rival_of_masses() -> None:
+    findings = diagnosed(0, fast_clock)
+    assert findings.verdict == "ambiguous"
+    assert "clock_rate" in kinds(findings)

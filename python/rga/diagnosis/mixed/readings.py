@@ -20,7 +20,8 @@ def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) 
     """The likelihood of modes that were measured beside a record.
 
     A context that the modes lack is its mean over the record's rows within the window; without
-    such rows it is taken between those about it.
+    such rows it is taken between those about it, and it stays unknown where a window lies before or
+    behind all rows.
 
     Args:
         model: of both.
