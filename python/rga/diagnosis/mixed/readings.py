@@ -14,14 +14,15 @@ from rga.model import Model
 from rga.records import Record
 from rga.records.modal.read import load_modal_record
 from rga.records.modal.record import ModalRecord
+from rga.simulation.modal.structures import ModalStructures
 
 
 def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) -> ModalLikelihood:
     """The likelihood of modes that were measured beside a record.
 
     A context that the modes lack is its mean over the record's rows within the window; without
-    such rows it is taken between those about it, and it stays unknown where a window lies before or
-    behind all rows.
+    such rows it is taken between those about it. A window before or behind all rows is left out where
+    the context drives the structure.
 
     Args:
         model: of both.
@@ -29,8 +30,8 @@ def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) 
         modal: the modes, or their file.
 
     Raises:
-        InputError: the file cannot be used, one of both has dates and the other has none, or a mode
-            lies apart from every row though a context of the record drives it.
+        InputError: the file cannot be used, one of both has dates and the other has none, or all
+            windows lie apart from every row though a context of the record drives the structure.
     """
     if not isinstance(modal, ModalRecord):
         modal = load_modal_record(modal, model)
@@ -42,7 +43,7 @@ def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) 
             "write both as ISO 8601 dates, or both in seconds on one clock",
         )
     clock, at = record.origin + record.time, modal.origin + modal.time
-    contexts = dict(modal.contexts)
+    contexts, driving = dict(modal.contexts), ModalStructures(model).needed
     for name, column in record.contexts.items():
         if name in contexts:
             continue
@@ -51,7 +52,8 @@ def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) 
             half = np.nan_to_num(modal.duration) / 2
             ends = zip(at - half, at + half, strict=True)
             found = np.array([_mean_over(clock[seen], column[seen], *one) for one in ends])
-            if np.isfinite(found).all():
+            # What drives nothing, and is known of some windows alone, says nothing of the others.
+            if name in driving or np.isfinite(found).all():
                 contexts[name] = found
     readings = ModalReadings.of(model, replace(modal, contexts=contexts))
     return ModalLikelihood(ModalTrials(model, readings))

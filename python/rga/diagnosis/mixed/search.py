@@ -7,7 +7,12 @@ import numpy as np
 
 from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
-from rga.diagnosis.modal.search import MODES_A_CAUSE, UNLIKELY, worth_fitting
+from rga.diagnosis.modal.search import (
+    MODES_A_CAUSE,
+    UNLIKELY,
+    likeliest_onset,
+    worth_fitting,
+)
 from rga.diagnosis.modal.separating import COMMON
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Alternative
@@ -58,6 +63,7 @@ def search(
         progress: called with what is done and the share of it.
     """
     current = _exchanged(evidence.beside(found.fit), evidence, screening)
+    current = _begun(current, evidence)
     candidates = modal_hypotheses(evidence.likelihood.trials)
     naming = criteria.naming
     modes = len(evidence.likelihood.readings.modes)
@@ -131,6 +137,26 @@ def _exchanged(current: MixedFit, evidence: MixedEvidence, screening: Screening)
         best = max(options, key=log_evidence, default=current)
         if best.log_evidence > current.log_evidence + WORTH_EXCHANGE:
             current = best
+    return current
+
+
+def _begun(current: MixedFit, evidence: MixedEvidence) -> MixedFit:
+    """The causes of the record, those that act in all of it begun when the modes show them first.
+
+    A record that lies wholly behind an onset cannot tell it.
+    """
+    for number, one in enumerate(current.hypotheses):
+        shown = evidence.on_modes(current.hypotheses)
+        if one.onset is not None or number not in shown:
+            continue
+        onset = likeliest_onset(current.modal, shown.index(number))
+        if onset is None:
+            continue
+        begun = list(current.hypotheses)
+        begun[number] = one.beginning(onset)
+        other = evidence.fit(begun, current.z)
+        if other.log_evidence > current.log_evidence + WORTH_EXCHANGE:
+            current = other
     return current
 
 

@@ -14,7 +14,7 @@ from rga.diagnosis.mixed.search import MixedFound
 from rga.diagnosis.modal.account import by_sensor, mode_gap, mode_groups, mode_readings
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
-from rga.diagnosis.modal.doubts import thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import drifting, thin, warnings_of, weather
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.noise.covariance import Reduced
@@ -63,8 +63,9 @@ class ToldModes:
             if after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
             words += thin(readings, causes=True)
-        words += weather(readings, [modal.hypotheses[number] for number in shown], self._after)
-        return words
+        alone = [number for number in shown if not self._in_record(number)]
+        words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
+        return words + drifting(likelihood, self._after)
 
     def told(
         self, findings: Findings, model: Model, extended_model: Model, tried: Sequence[Tried]
@@ -120,6 +121,13 @@ class ToldModes:
         """Whether a cause that modes can show does show in them."""
         own = change(self.mixed.evidence.likelihood, self.mixed.fit.modal, number)
         return float(np.linalg.norm(own)) >= SHOWS
+
+    def _in_record(self, number: int) -> bool:
+        """Whether the record by itself shows a cause that modes show, and so no weather made it."""
+        evidence, fit = self.mixed.evidence, self.mixed.fit
+        own, _ = self._change(fit, evidence.on_modes(fit.hypotheses)[number])
+        size = float(evidence.problem.covariance.product(own, own)[0, 0])
+        return size >= evidence.problem.criteria.explanations.smallest_d_prime**2
 
     @cached_property
     def by_modes(self) -> bool:

@@ -4,13 +4,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.readings import (
+    MOST_MEMORY,
+    REPEATS,
+    ModalReadings,
+    context_courses,
+)
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.model import Model
+from rga.quantities import counted
 
 #: modes without which nothing is said to be right
 FEW_MODES = 3
+#: standard deviations from which on a drift is no chance
+SURE = 5.0
 #: change of a frequency that no weather makes
 BEYOND_WEATHER = 0.1
 
@@ -32,6 +41,36 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
             "they are is a guess, and the causes hang on it"
         )
     return words
+
+
+def drifting(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
+    """In words: frequencies that go on changing, which causes and contexts leave unexplained."""
+    readings = likelihood.readings
+    time = readings.time - readings.time.mean()
+    courses = context_courses(readings.contexts, len(time))
+    columns = np.column_stack([np.ones(len(time)), courses.T, time / max(np.ptp(time), 1e-300)])
+    found, sizes = [], []
+    for mode, name in enumerate(readings.modes):
+        off = readings.log_f[:, mode] - after.log_f[:, mode]
+        seen = np.isfinite(off)
+        if seen.sum() < max(REPEATS, 2 * columns.shape[1]):
+            continue
+        inverse = np.linalg.pinv(columns[seen])
+        amounts = inverse @ off[seen]
+        left = off[seen] - columns[seen] @ amounts
+        # What is left goes with the window before by as much as it shows.
+        kept = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
+        kept = min(max(kept, 0.0), MOST_MEMORY)
+        spread = float(left.std() * np.linalg.norm(inverse[-1])) * np.sqrt((1 + kept) / (1 - kept))
+        if abs(amounts[-1]) > max(likelihood.level, SURE * spread):
+            found.append(name)
+            sizes.append(float(amounts[-1]))
+    if not found:
+        return []
+    return [
+        f"frequencies of {counted(len(found), 'mode')} ({', '.join(found)}) drift over the record, "
+        f"by up to {np.expm1(max(sizes, key=abs)):+.1%}, and nothing explains it"
+    ]
 
 
 def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Prediction) -> list[str]:
@@ -63,6 +102,13 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
             f"paired by frequency only, without a shape: {', '.join(by_frequency)}; what trades "
             "places with another mode passes for what moves"
         )
+    if readings.uncovered:
+        warnings.append(
+            f"left out: {counted(readings.uncovered, 'window')} in which a context that drives the "
+            "structure is not known"
+        )
+    if readings.record.left_out:
+        warnings.append(f"columns that are not used: {', '.join(readings.record.left_out)}")
     if readings.unnamed:
         warnings.append(f"{readings.unnamed} entries of the record are none of the modes expected")
     return warnings

@@ -20,6 +20,8 @@ from rga.errors import InputError, UnstableStructureError
 STEP, STEPS, SHORTENED = 1e-3, 12, 6
 #: bounds of z and of a step in it, and the gain that is worth another
 FARTHEST, LONGEST, ENOUGH = 8.0, 2.0, 1e-3
+#: where the data alone decide: weight of the prior, and bounds of z
+UNWEIGHED, ANYWHERE = 1e-4, 60.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,29 +84,48 @@ def fitted(
     start: Sequence[float] | FloatArray,
 ) -> ModalFit:
     """The most likely parameters of hypotheses together, by Gauss-Newton steps."""
+    return _fitted(likelihood, hypotheses, start, 1.0, FARTHEST)
+
+
+def least_loss(fit: ModalFit) -> float:
+    """Loss of the data alone where it is least, whatever is known of parameters beforehand."""
+    if fit.prediction is None:
+        return np.inf
+    own = _fitted(fit.likelihood, fit.hypotheses, fit.z, UNWEIGHED, ANYWHERE)
+    return min(own.likelihood_loss, fit.likelihood_loss)
+
+
+def _fitted(
+    likelihood: ModalLikelihood,
+    hypotheses: Sequence[Hypothesis],
+    start: Sequence[float] | FloatArray,
+    usual: float,
+    farthest: float,
+) -> ModalFit:
+    """The same with a prior of so much weight, and no coordinate farther than so."""
     z = np.array(start, dtype=float)
     prediction = predicted(likelihood, hypotheses, z)
     if prediction is None:
         return _impossible(likelihood, hypotheses, z)
     residual = likelihood.residual(prediction)
-    loss = float(residual @ residual + z @ z)
+    loss = float(residual @ residual + usual * z @ z)
     signatures = np.zeros((len(z), len(residual)))
     for _ in range(STEPS):
         found = _signatures(likelihood, hypotheses, z, residual)
         if found is None:
             return _impossible(likelihood, hypotheses, z)
         signatures = found
-        slope = signatures @ residual - z
-        move = np.linalg.solve(signatures @ signatures.T + np.eye(len(z)), slope)
+        slope = signatures @ residual - usual * z
+        move = np.linalg.solve(signatures @ signatures.T + usual * np.eye(len(z)), slope)
         if float(move @ slope) < ENOUGH:
             break
         move *= min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
         for _ in range(SHORTENED):
-            there = np.clip(z + move, -FARTHEST, FARTHEST)
+            there = np.clip(z + move, -farthest, farthest)
             other = predicted(likelihood, hypotheses, there)
             if other is not None:
                 left = likelihood.residual(other)
-                cost = float(left @ left + there @ there)
+                cost = float(left @ left + usual * there @ there)
                 if cost < loss:
                     break
             move = move / 3

@@ -11,7 +11,7 @@ from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
-from rga.diagnosis.modal.doubts import thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import drifting, thin, warnings_of, weather
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
@@ -90,7 +90,7 @@ def _diagnosed(
     if found.fit.hypotheses and left_out.after.mean() >= left_out.before.mean():
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
-    doubts += weather(readings, found.fit.hypotheses, after)
+    doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
     if readings.doubtful:
         doubts.append(
             f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
@@ -166,7 +166,7 @@ def _causes(
             against = effect_words(content(estimated(nearest, len(nearest.hypotheses) - 1)))
             words = f"against {against}: {separating(likelihood, found.fit, nearest)}"
             if ranked[0][1] >= criteria.rivals.log_odds:
-                words += f"; this record tells them apart by {ranked[0][1]:.0f} log-odds"
+                words += f"; these modes tell them apart by {ranked[0][1]:.0f} log-odds"
         listed = [content(estimated(one, len(one.hypotheses) - 1)) for one in rivals]
         causes.append(
             Cause(

@@ -46,6 +46,7 @@ class ModalReadings:
         found: share of the windows in which each mode was found, float[modes].
         doubtful: windows of which another pairing is nearly as probable.
         unnamed: entries of the record that are none of the modes.
+        uncovered: windows left out, as a context that drives the structure is not known then.
     """
 
     record: ModalRecord
@@ -60,15 +61,20 @@ class ModalReadings:
     found: FloatArray
     doubtful: int
     unnamed: int
+    uncovered: int
 
     @classmethod
     def of(cls, model: Model, record: ModalRecord) -> "ModalReadings":
         """The modes that a model expects, out of a record.
 
         Raises:
-            InputError: none was found, or the model has no modes.
+            InputError: none was found, the model has no modes, or what drives the structure is
+                known in no window.
         """
-        expected = ModalSimulator(model).expected
+        simulator = ModalSimulator(model)
+        expected, given = simulator.expected, len(np.unique(record.time))
+        record = _covered(record, simulator.needed, model)
+        uncovered = given - len(np.unique(record.time))
         named = named_modes(record, model, expected)
         names = [name for k, name in enumerate(expected) if (named.mode == k).any()]
         if not names:
@@ -115,11 +121,26 @@ class ModalReadings:
             found=np.isfinite(log_f).mean(0),
             doubtful=len(named.doubtful),
             unnamed=int((named.mode < 0).sum()),
+            uncovered=uncovered,
         )
 
     def label(self, moment: float) -> str | float:
         """A time on the scale of onsets [s] as the record writes it."""
         return self.record.time_label(moment - self.record.origin)
+
+
+def _covered(record: ModalRecord, needed: set[str], model: Model) -> ModalRecord:
+    """The windows of which all contexts that drive the structure are known."""
+    known = np.ones(len(record), dtype=bool)
+    for name in sorted(needed & record.contexts.keys()):
+        known &= np.isfinite(record.contexts[name])
+        if not known.any():
+            raise InputError(
+                f"context {name!r}, which drives the structure, is not known in any window",
+                f"model {model.name!r}",
+                f"give a column {name} beside the frequencies, or a record of the same days",
+            )
+    return record.entries(known)
 
 
 def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, IntArray, float]:

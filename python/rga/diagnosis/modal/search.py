@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.diagnosis.modal.candidates import BEGINNINGS, ModalProspect, prospects
-from rga.diagnosis.modal.fit import ModalFit, fitted
+from rga.diagnosis.modal.fit import ModalFit, fitted, least_loss, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.separating import COMMON
 from rga.diagnosis.search.hypothesis import Hypothesis
@@ -82,7 +82,10 @@ def evidence(one: ModalFit) -> float:
 
 
 def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
-    """The best prospects, and the best of every kind, less those far behind."""
+    """The best prospects, and the best of every kind, less those far behind.
+
+    What moves all modes alike is never left out: how unusual it is must not decide.
+    """
     kinds: dict[str, ModalProspect] = {}
     for one in promising:
         kinds.setdefault(one.hypothesis.name, one)
@@ -90,7 +93,8 @@ def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
     near = sum(one.score > best - NEAR for one in promising)
     chosen = list(promising[: min(max(FITTED, near), MOST)])
     chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
-    return [one for one in chosen if one.score > min(0.0, best - ROUGHLY)]
+    least = min(0.0, best - ROUGHLY)
+    return [one for one in chosen if one.score > least or one.hypothesis.name in COMMON]
 
 
 def without(current: ModalFit, number: int) -> ModalFit:
@@ -113,6 +117,28 @@ def _timed(one: ModalFit) -> ModalFit:
         other = fitted(one.likelihood, [*one.hypotheses[:-1], moved], one.z)
         best = max(best, other, key=evidence)
     return best
+
+
+def likeliest_onset(current: ModalFit, number: int) -> float | None:
+    """When a cause that is held for always would have begun; None where that is no better.
+
+    The others, and its size, stay as they are.
+    """
+    likelihood, several = current.likelihood, list(current.hypotheses)
+    always = several[number]
+
+    def loss(moment: float) -> float:
+        several[number] = always.beginning(moment)
+        there = predicted(likelihood, several, current.z)
+        return np.inf if there is None else float((likelihood.residual(there) ** 2).sum())
+
+    time = likelihood.readings.time
+    step = len(time) // BEGINNINGS + 1
+    nearest = min(time[1:].tolist()[::step], key=loss, default=None)
+    if nearest is None:
+        return None
+    best = min(_about(likelihood, always.beginning(nearest)), key=loss)
+    return best if loss(best) < float((current.residual**2).sum()) else None
 
 
 def _about(likelihood: ModalLikelihood, late: Hypothesis) -> list[float]:
@@ -160,7 +186,9 @@ def _rivals(
         if np.isfinite(other.log_evidence):
             behind = current.log_evidence - other.log_evidence
             far = np.abs(other.z[other.of(len(others))]).max(initial=0.0) > UNLIKELY
-            if not far or {own.name, rival.name} <= COMMON:
+            if {own.name, rival.name} <= COMMON:
+                behind = min(behind, least_loss(other) - least_loss(current))
+            elif not far:
                 behind = min(behind, other.likelihood_loss - current.likelihood_loss)
             found.append((other, behind))
     return sorted(found, key=lambda pair: pair[1])

@@ -283,7 +283,7 @@ def _contexts(model: Model, needed: set[str], readings: ModalReadings) -> Values
         column = readings.contexts.get(name)
         seen = np.zeros(0, dtype=bool) if column is None else np.isfinite(column)
         if column is not None and seen.any():
-            found[name] = np.interp(readings.time, readings.time[seen], column[seen])
+            found[name] = np.where(seen, column, column[seen].mean())
         elif name in needed:
             raise InputError(
                 f"context {name!r}, which drives the structure, is not in the modal record",

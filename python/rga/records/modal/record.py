@@ -1,10 +1,10 @@
 """Modes that were found in windows of time, before anybody knows which is which."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.model.effect import seconds
 from rga.records.record import time_label
 
@@ -57,6 +57,22 @@ class ModalRecord:
     def time_label(self, elapsed: float) -> str | float:
         """A time [s since time 0] as the record writes it: ISO 8601 text, or seconds."""
         return time_label(self.start, elapsed)
+
+    def entries(self, chosen: BoolArray) -> "ModalRecord":
+        """The record of some of its entries.
+
+        Args:
+            chosen: bool[entries].
+        """
+        columns = {
+            name: getattr(self, name)[chosen]
+            for name in (
+                "time", "duration", "frequency", "frequency_sd", "damping", "shapes", "realness",
+            )
+        }  # fmt: skip
+        hint = tuple(one for one, kept in zip(self.hint, chosen, strict=True) if kept)
+        contexts = {name: column[chosen] for name, column in self.contexts.items()}
+        return replace(self, **columns, hint=hint, contexts=contexts)
 
     @property
     def windows(self) -> IntArray:

@@ -52,6 +52,11 @@ class ModalSimulator:
         self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         self.expected = {name: self._look(name, one) for name, one in self.model.modes.items()}
 
+    @property
+    def needed(self) -> set[str]:
+        """Context variables that change the structure."""
+        return self._structures.needed
+
     def predict(self, contexts: Contexts | None = None) -> FloatArray:
         """What the sensors read.
 

@@ -8,7 +8,7 @@ import numpy as np
 from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
-from rga.model.effect import Values, when_all_act
+from rga.model.effect import Effect, Values, when_all_act
 from rga.model.schema import Model
 from rga.model.structure import Structure, build_structure
 from rga.simulation.contexts import Contexts, contexts_by_name
@@ -24,8 +24,7 @@ class ModalStructures:
     """
 
     def __init__(self, model: Model) -> None:
-        bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
-        silent = model.model_copy(update={"sensors": {}, "effects": bare})
+        silent = model.model_copy(update={"sensors": {}, "effects": _swinging(model)})
         self._model, self._begun = model, when_all_act(model.effects.values())
         self._simulator = Simulator(silent, build_structure(silent))
 
@@ -92,6 +91,14 @@ class ModalStructures:
         if len(rows) != 1:
             raise InputError("there is more than one row", "contexts of modes", "give one row")
         return structures[0]
+
+
+def _swinging(model: Model) -> dict[str, Effect]:
+    """Effects that change the structure, and those whose values these ask for."""
+    off_sensors = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+    if any(one.overrides("change_values") for one in off_sensors.values()):
+        return off_sensors
+    return {name: one for name, one in off_sensors.items() if one.structural}
 
 
 def computed_modes(
