@@ -81,6 +81,22 @@ def test_nothing_is_named_where_nothing_is_hidden(make: Callable[[], Hidden], se
 SEEDS = [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))]
 
 
+@pytest.mark.parametrize("clock", [1.1, pytest.param(0.9, marks=thorough)])
+def test_a_clock_that_is_off_by_a_tenth_is_among_what_is_named(clock: float) -> None:
+    findings = diagnose_modes(*measured(0, Hidden(clock=clock)))
+    assert findings.verdict == "ambiguous"
+    assert {"elastic_modulus", "clock_rate"} <= kinds(findings) <= COMMON
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.02])
+def test_frequencies_that_drift_are_no_state_that_a_bracing_explains(drift: float) -> None:
+    model, record = measured(0, soft_bracing(), windows=60)
+    ends = 1.0 - drift * record.time / np.ptp(record.time)
+    findings = diagnose_modes(model, replace(record, frequency=record.frequency * ends))
+    assert findings.causes[0].effect["group"] == "bottom bracing"
+    assert findings.verdict == ("partial" if drift else "named")
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_soft_bracing_is_named_with_its_size(seed: int) -> None:
     cause = diagnosed(seed, soft_bracing).causes[0]

@@ -4,6 +4,7 @@ The truth is a frame with scatter, solved by plain NumPy; who analyses it holds 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -15,6 +16,8 @@ from rga.findings import Findings
 
 thorough = pytest.mark.thorough
 GROUPS = {member["groups"][0] for member in bridge()["members"].values()}
+#: window in which it is
+ONSET = 20
 DECK = {f"b{at}{side}": 400.0 for at in range(7) for side in "ns"}
 SEEDS = [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))]
 THOROUGH = [pytest.param(seed, marks=thorough) for seed in range(4)]
@@ -64,6 +67,10 @@ def soft_bracing() -> Hidden:
 
 def soft_bearings() -> Hidden:
     return Hidden(spring={"b0n": 1.5e7, "b0s": 1.5e7})
+
+
+def weak_post_later() -> Hidden:
+    return Hidden(stiffness={"b0n-t1n": 0.6}, onset=ONSET)
 
 
 def weak_post_and_bracing() -> Hidden:
@@ -118,6 +125,15 @@ def test_a_cause_of_each_is_named_with_its_size() -> None:
     for place, size in weak_post_and_bracing().stiffness.items():
         low, high = found[place].effect["factor"]["ci90"]
         assert low - 0.05 < size < high + 0.05
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_record_behind_an_onset_has_it_from_the_modes(seed: int) -> None:
+    model, record, modal = mixed(seed, weak_post_later())
+    findings = diagnose(model, replace(record, start=3600.0 * 30), modal=modal)
+    (cause,) = findings.causes
+    assert (cause.effect["member"], cause.onset) == ("b0n-t1n", 3600.0 * ONSET)
+    assert findings.verdict == "named"
 
 
 @thorough

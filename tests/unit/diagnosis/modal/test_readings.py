@@ -1,11 +1,15 @@
 """Measured modes: their noise from repeats, and the mean of their shapes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from independent.modal_bridge import MISSING, NOISE, Hidden, measured
 from rga.diagnosis.modal.readings import ModalReadings, mean_shape
 from rga.errors import InputError
+from rga.model import read_effect
+from rga.model.schema import ContextVariable
 
 
 def test_noise_is_that_of_repeats_and_a_step_is_none() -> None:
@@ -31,6 +35,19 @@ def test_shapes_are_turned_onto_each_other() -> None:
 def test_without_shapes_nothing_is_said_of_them() -> None:
     mean, at, noise = mean_shape(np.full((3, 2), np.nan), np.array([1.0, 1.0]))
     assert (len(mean), len(at), noise) == (0, 0, 0.0)
+
+
+def test_windows_without_what_drives_the_structure_are_left_out() -> None:
+    model, record = measured(1, Hidden(), windows=20)
+    softer = {"kind": "member_stiffness", "group": "bottom bracing", "factor": {"context": "frost"}}
+    frost = ContextVariable(unit="-", range=(0.5, 1.0))
+    model = model.model_copy(update={"context": {"frost": frost}})
+    model = model.extended({"soft": read_effect(softer, "soft")})
+    known = np.where(record.windows < 12, 0.5 + 0.02 * record.windows, np.nan)
+    readings = ModalReadings.of(model, replace(record, contexts={"frost": known}))
+    assert (len(readings.time), readings.uncovered) == (12, 8)
+    with pytest.raises(InputError, match="'frost', which drives the structure, is not known"):
+        ModalReadings.of(model, replace(record, contexts={"frost": np.full(len(record), np.nan)}))
 
 
 def test_a_record_of_other_modes_is_refused() -> None:
