@@ -18,7 +18,7 @@ from rga.detection.baseline.stationarity import watched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
-from rga.detection.thresholds import StreamNoise, TailModel, calibration, memory_of
+from rga.detection.thresholds import StreamNoise, calibration, memory_of
 from rga.errors import InputError
 from rga.numerics.seeds import as_seed
 
@@ -45,7 +45,8 @@ class SyncMonitor:
     Statistics for steps in one, several or all sensors, for drifts and for changes of variance, on
     scales from a quarter of a standard deviation up, are each held against a threshold. Thresholds
     come from simulated streams, whose references are learned from baselines as long as the user's,
-    so that an alarm without a change comes once in `arl0` rows on average.
+    so that an alarm without a change comes once in `arl0` rows on average. What the baseline itself
+    shows, and chance does not, is usual: sensors that are off together now and then, for example.
 
     An alarm stands until `begin_again`. NaN is a missing reading; gaps raise no alarms.
 
@@ -94,12 +95,13 @@ class SyncMonitor:
             raise InputError(what, "the baseline", "give a longer one, or other sensors")
         rows = np.ascontiguousarray(given[:, self._watched])
         reference = Reference.learn(rows)
-        _, scores = watched(reference, rows)
+        peaks, scores = watched(reference, rows)
         noise = StreamNoise.like(
             rows.shape[1], memory_of(reference.weights), long_run_variance(scores)
         )
         simulated = calibration(noise, _rounded(len(rows)), _arl0(arl0), as_seed(seed))
-        self._begin(reference, simulated, arl0, seed)
+        thresholds = simulated.beside(peaks, len(rows), arl0)
+        self._begin(reference, thresholds, arl0, seed)
         own = [called[column] for column in np.flatnonzero(self._watched).tolist()]
         self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, own)
 
@@ -121,7 +123,7 @@ class SyncMonitor:
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
         simulated = calibration(StreamNoise(n_sensors), None, _arl0(arl0), as_seed(seed))
-        monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
+        monitor._begin(Reference.known(n_sensors), simulated.thresholds(arl0), arl0, seed)
         return monitor
 
     def update(self, row: ArrayLike) -> bool:
@@ -236,8 +238,8 @@ class SyncMonitor:
             rows = np.ascontiguousarray(rows[:, self._watched])
         return self._statistics.update_many(rows)
 
-    def _begin(self, reference: Reference, simulated: TailModel, arl0: float, seed: int) -> None:
-        self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
+    def _begin(self, reference: Reference, thresholds: FloatArray, arl0: float, seed: int) -> None:
+        self._statistics = reference.statistics(thresholds, ROWS_KEPT)
         self._arl0, self._seed = float(arl0), int(seed)
         self._sizes, self._signature = reference.sizes, reference.signature
         self._warnings = ()

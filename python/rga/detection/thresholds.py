@@ -37,6 +37,9 @@ WITHIN = 0.05
 LONG_RUNS = (1.0, 1.25, 1.5, 2.0, 3.0, 5.0)
 ABOUT = 0.08
 
+#: how often a value as large is expected in a stream that hardly has it by chance
+HARDLY = 0.05
+
 SHARES = np.array([statistic.share for statistic in STATISTICS])
 
 
@@ -60,6 +63,20 @@ class TailModel:
         """Of the statistics, where a false alarm comes once in so many rows on average."""
         found = np.exp(self.location + self.scale * (np.log(arl0 / self.rows) - np.log(SHARES)))
         return np.asarray(np.minimum(found, np.finfo(np.float32).max))
+
+    def beside(self, peaks: FloatArray, rows: int, arl0: float) -> FloatArray:
+        """The same, and no lower than a stream without a change has shown where chance is no reason.
+
+        What sensors miss together, now and then, is in no simulated stream.
+
+        Args:
+            peaks: largest values in that stream, float[statistics].
+            rows: of it.
+            arl0: as above.
+        """
+        heights = (logs(peaks) - self.location) / self.scale
+        hardly = heights > np.log(rows / self.rows / HARDLY)
+        return np.maximum(self.thresholds(arl0), np.where(hardly, peaks, 0.0))
 
     def chance(self, peaks: FloatArray, rows: int) -> float:
         """Probability that chance alone lifts some statistic so high within so many rows."""

@@ -62,3 +62,18 @@ def test_noise_too_slow_for_a_memory_raises_no_more_alarms() -> None:
                 monitor.begin_again()
     low, high = poisson.interval(0.99, draws * rows / arl0)
     assert low / 2 <= alarms <= high
+
+
+def test_what_sensors_miss_together_in_the_baseline_is_usual() -> None:
+    """Once in 300 rows twenty are off at once, which no simulated stream is: 51 alarms without."""
+    arl0, draws, alarms = 10_000, 4, 0
+    for draw in range(draws):
+        generator = np.random.default_rng(800 + draw)
+        readings = generator.standard_normal((15_000, 20))
+        readings[generator.random(len(readings)) < 1 / 300] *= 2.0
+        monitor = SyncMonitor(readings[:5_000], arl0=arl0)
+        for packet in np.split(readings[5_000:], 200):
+            if monitor.update_many(packet)[-1]:
+                alarms += 1
+                monitor.begin_again()
+    assert alarms <= 4 * draws
