@@ -65,7 +65,7 @@ class TailModel:
         return np.asarray(np.minimum(found, np.finfo(np.float32).max))
 
     def beside(self, peaks: FloatArray, rows: int, arl0: float) -> FloatArray:
-        """The same, and no lower than a stream without a change has shown where chance is no reason.
+        """The same, and no lower than what a stream without a change shows and chance does not.
 
         What sensors miss together, now and then, is in no simulated stream.
 

@@ -21,8 +21,8 @@ def modes_beside(model: Model, record: Record, modal: ModalRecord | str | Path) 
     """The likelihood of modes that were measured beside a record.
 
     A context that the modes lack is its mean over the record's rows within the window; without
-    such rows it is taken between those about it. A window before or behind all rows is left out where
-    the context drives the structure.
+    such rows it is taken between those about it. A window before or behind all rows is left out
+    where the context drives the structure.
 
     Args:
         model: of both.

@@ -67,10 +67,11 @@ def drifting(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
             sizes.append(float(amounts[-1]))
     if not found:
         return []
-    return [
+    words = (
         f"frequencies of {counted(len(found), 'mode')} ({', '.join(found)}) drift over the record, "
         f"by up to {np.expm1(max(sizes, key=abs)):+.1%}, and nothing explains it"
-    ]
+    )
+    return [words]
 
 
 def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Prediction) -> list[str]:

@@ -72,9 +72,9 @@ class ModalReadings:
                 known in no window.
         """
         simulator = ModalSimulator(model)
-        expected, given = simulator.expected, len(np.unique(record.time))
+        expected, every = simulator.expected, len(np.unique(record.time))
         record = _covered(record, simulator.needed, model)
-        uncovered = given - len(np.unique(record.time))
+        uncovered = every - len(np.unique(record.time))
         named = named_modes(record, model, expected)
         names = [name for k, name in enumerate(expected) if (named.mode == k).any()]
         if not names:
