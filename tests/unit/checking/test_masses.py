@@ -1,5 +1,7 @@
 """What a model weighs, as a check tells it."""
 
+import pytest
+
 from rga import ModelBuilder
 from rga.checking import check
 from rga.model import Model
@@ -36,11 +38,17 @@ def test_what_it_weighs_part_by_part() -> None:
 
 
 def test_members_without_density_beside_others() -> None:
-    warning, note = (str(one) for one in check(portal(light=True, box=1.0)).findings[:2])
+    warning, note = (str(one) for one in check(portal(light=True, box=10.0)).findings[:2])
     assert "material 'light' has no density" in warning
     assert note.startswith("note")
 
 
 def test_nothing_that_weighs() -> None:
     (note,) = told(portal(density=0.0, box=0.0))
+    assert note.startswith("warning")
     assert "nothing has a mass" in note
+
+
+@pytest.mark.parametrize(("box", "mistaken"), [(0.25, True), (250.0, False), (2.5e6, True)])
+def test_masses_in_another_unit_than_kilograms(box: float, mistaken: bool) -> None:
+    assert any("masses beside the members" in one for one in told(portal(box=box))) == mistaken
