@@ -4,6 +4,7 @@ The truth is a frame with stiff joints and scatter in every member; who analyses
 Windows have noise with memory, modes that were not found, and no names.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +16,8 @@ from rga.model import Model, read_model
 from rga.records.modal.record import ModalRecord
 
 FloatArray = NDArray[np.float64]
+#: a model file with members of the kind that is named
+Structure = Callable[[str], dict[str, Any]]
 PANELS, PANEL, WIDE, HIGH = 6, 4.0, 4.0, 4.0
 #: of a typical member [m2, m4], and its modulus [Pa]
 AREA, INERTIA, MODULUS = 4e-3, 6e-6, 2.1e11
@@ -110,9 +113,11 @@ def bridge(kind: str = "truss") -> dict[str, Any]:
     }  # fmt: skip
 
 
-def truth(rng: np.random.Generator, hidden: Hidden, late: bool) -> Model:
+def truth(
+    rng: np.random.Generator, hidden: Hidden, late: bool, structure: Structure = bridge
+) -> Model:
     """The frame with its scatter, and with what is hidden once it acts."""
-    content = bridge("frame")
+    content = structure("frame")
     for name, member in content["members"].items():
         section = content["sections"][member["section"]]
         factor = float(np.exp(SCATTER * rng.standard_normal()))
@@ -137,26 +142,34 @@ def truth(rng: np.random.Generator, hidden: Hidden, late: bool) -> Model:
 
 
 def measured(
-    seed: int, hidden: Hidden, modes: int = 6, windows: int = 40
+    seed: int,
+    hidden: Hidden,
+    modes: int = 6,
+    windows: int = 40,
+    structure: Structure = bridge,
 ) -> tuple[Model, ModalRecord]:
     """The truss that an analyst holds, and the modes that were found in windows of an hour."""
-    content, record = described(seed, hidden, modes, windows)
-    return read_model(content, "bridge"), record
+    content, record = described(seed, hidden, modes, windows, structure)
+    return read_model(content, content["name"]), record
 
 
 def described(
-    seed: int, hidden: Hidden, modes: int = 6, windows: int = 40
+    seed: int,
+    hidden: Hidden,
+    modes: int = 6,
+    windows: int = 40,
+    structure: Structure = bridge,
 ) -> tuple[dict[str, Any], ModalRecord]:
     """The same with the truss as a model file."""
     rng = np.random.default_rng(seed)
     scatter = np.random.default_rng(seed + 1000)
-    content = bridge()
+    content = structure("truss")
     points = list(content["points"])
     nodes = list(content["nodes"])
     states = []
     for late in (False, True):
         scatter = np.random.default_rng(seed + 1000)
-        frequencies, shapes = dense_mode_shapes(truth(scatter, hidden, late), modes)
+        frequencies, shapes = dense_mode_shapes(truth(scatter, hidden, late, structure), modes)
         shapes = shapes.reshape(modes, len(nodes), 6)
         at_points = np.array(
             [

@@ -57,7 +57,7 @@ def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
                 f"{abs(off[mode]) / spread[mode]:.1f} times what a right model leaves"
             )
         apart = likelihood.shape_off(mode, prediction)
-        if float(apart @ apart) > (SHAPE_OFF * likelihood.shape_spread(mode)) ** 2:
+        if float(apart @ apart) > SHAPE_OFF**2:
             words.append(
                 f"the shape of mode {name} is not the simulated one "
                 f"(MAC {prediction.mac[mode]:.2f})"

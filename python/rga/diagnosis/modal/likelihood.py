@@ -13,7 +13,7 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.readings import ModalReadings, context_courses
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
-from rga.simulation.modal.pairing import SHAPE_ERROR
+from rga.simulation.modal.pairing import SHAPE_ERROR, apart, freedom_of_parts, without_parts
 
 #: error that a model makes of what a cause changes of a frequency, as a share of the change:
 #: members as built and joints that it idealises leave about as much
@@ -116,15 +116,29 @@ class ModalLikelihood:
                 left = left - (1.0 - 1.0 / np.sqrt(1.0 + square)) * along * white
             parts.append(left)
         parts += [
-            self.shape_off(mode, prediction) / self.shape_spread(mode)
+            self.shape_off(mode, prediction)
             for mode in range(len(self._series))
             if not self.hidden[mode]
         ]
         return np.concatenate(parts)
 
     def freedom(self, prediction: Prediction) -> float:
-        """What the errors of the changes cost of the log evidence."""
-        return sum(0.5 * float(np.log1p(white @ white)) for _, white in self._doubts(prediction))
+        """What errors of the changes, and shapes that may be mixed, cost of the log evidence.
+
+        Beyond what it costs without any cause.
+        """
+        of_changes = sum(
+            0.5 * float(np.log1p(white @ white)) for _, white in self._doubts(prediction)
+        )
+        mixed, usual = (
+            sum(
+                freedom_of_parts(self._parts(mode, one)[1], self.shape_spread(mode))
+                for mode in range(len(self._series))
+                if not self.hidden[mode]
+            )
+            for one in (prediction, self._nothing)
+        )
+        return of_changes + mixed - usual
 
     def _doubts(self, prediction: Prediction) -> Iterator[tuple[int, FloatArray]]:
         """Modes with a standard deviation of what their changes may be off, whitened."""
@@ -155,14 +169,17 @@ class ModalLikelihood:
         return np.nan_to_num(self.readings.log_f - prediction.log_f)
 
     def shape_off(self, mode: int, prediction: Prediction) -> FloatArray:
-        """The part of a measured shape that is not along the predicted one, float[points of it]."""
+        """The part of a measured shape that is not along the predicted one, float[points of it].
+
+        In standard deviations; what may be in it of other modes counts for less.
+        """
+        return without_parts(*self._parts(mode, prediction), self.shape_spread(mode))
+
+    def _parts(self, mode: int, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
+        """What of a measured shape is not along the predicted one, and what may be of others."""
         look = self.readings.looks[mode]
-        if not len(look.at):
-            return np.zeros(0)
         own = self.trials.at_points(prediction.shapes[[mode]])[0, look.at]
-        length = float(own @ own)
-        along = own * (float(own @ look.shape) / length) if length > 0 else 0.0 * own
-        return np.asarray(look.shape - along)
+        return apart(look.shape, own, prediction.parts[mode])
 
     def shape_spread(self, mode: int) -> float:
         """Standard deviation of that."""

@@ -12,7 +12,7 @@ from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
 from rga.model.schema import Model
 from rga.model.structure import Structure
-from rga.simulation.modal.pairing import paired
+from rga.simulation.modal.pairing import paired, parts_of_others, unlike_computed
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
 
@@ -37,6 +37,7 @@ class Prediction:
         number: of the computed mode that each is, there, int[modes].
         mac: of each with the measured shape, float[modes]; NaN without shape.
         doubtful: other pairings that are nearly as probable.
+        parts: of other modes that may be in each shape at its points, float[k, points] each.
     """
 
     log_f: FloatArray
@@ -44,6 +45,7 @@ class Prediction:
     number: IntArray
     mac: FloatArray
     doubtful: int
+    parts: tuple[FloatArray, ...]
 
 
 class ModalTrials:
@@ -174,7 +176,7 @@ class ModalTrials:
             along = np.einsum("mna,mna->m", state.shapes, first.shapes)
             shapes += share * np.sign(along)[:, None, None] * state.shapes
         return Prediction(
-            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states)
+            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states), first.parts
         )
 
     def _state(self, effects: Sequence[Effect]) -> Prediction:
@@ -214,8 +216,12 @@ class ModalTrials:
         squares, shapes, *_ = self._modes(structure)
         moving = shapes[:, : len(self.model.nodes), :3]
         at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
-        frequencies = np.sqrt(squares) / (2 * np.pi)
-        pairing = paired(self.readings.looks, frequencies, at_points)
+        frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
+        log_f = np.log(frequencies)
+        unlike = np.array(
+            [unlike_computed(look.shape, log_f, at_points[:, look.at]) for look in looks]
+        )
+        pairing = paired(looks, frequencies, at_points, unlike=unlike)
         if (pairing.computed < 0).any():
             lacking = self.readings.modes[int(np.argmin(pairing.computed))]
             raise InputError(
@@ -223,11 +229,15 @@ class ModalTrials:
             )
         number = pairing.computed
         return Prediction(
-            np.log(frequencies[number]),
+            log_f[number],
             moving[number],
             number,
             pairing.mac[np.arange(len(number)), number],
             len(pairing.others),
+            tuple(
+                parts_of_others(log_f, at_points[:, look.at], int(one))
+                for look, one in zip(looks, number, strict=True)
+            ),
         )
 
     def at_points(self, shapes: FloatArray) -> FloatArray:

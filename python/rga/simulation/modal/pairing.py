@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -12,6 +13,9 @@ from rga.arrays import FloatArray, IntArray
 SHAPE_ERROR = 0.05
 #: pairings that are as good but for this are all carried: a factor of a hundred in probability
 DOUBTFUL = 4.6
+#: share by which what is not modelled couples modes: the nearer their frequencies, the more of one
+#: is in the shape of the other; parts of another mode that are less than the second say nothing
+COUPLING, LEAST_PART = 0.004, 0.05
 #: relative distance of frequencies below which shapes may be mixed at will
 CLOSE = 1e-4
 #: cost of a pair beside which any other is better
@@ -70,14 +74,19 @@ def paired(
     frequencies: FloatArray,
     shapes: FloatArray,
     unpaired: float = IMPOSSIBLE,
+    unlike: FloatArray | None = None,
 ) -> Pairing:
     """The most probable pairing of all modes at once.
+
+    Pairings that differ by modes of as good as the same frequency are one.
 
     Args:
         expected: modes.
         frequencies: of computed modes, or of those of a window [Hz], float[computed].
         shapes: of these at all points, float[computed, points]; NaN where one did not measure.
         unpaired: cost of a mode without a pair, as a negative logarithm of a probability.
+        unlike: 1 - MAC of all pairs where close modes may be mixed, as `unlike_mixed` has it,
+            float[expected, computed]; None: as they are.
     """
     table = np.array([[_mac(one, shape) for shape in shapes] for one in expected]).reshape(
         len(expected), len(shapes)
@@ -85,8 +94,11 @@ def paired(
     near = np.array([one.near for one in expected])[:, None]
     within = np.array([one.within for one in expected])[:, None]
     cost = 0.5 * (np.log(frequencies / near) / within) ** 2
-    cost = np.minimum(cost + np.nan_to_num(1.0 - table) / SHAPE_ERROR, IMPOSSIBLE)
+    apart = 1.0 - table if unlike is None else unlike
+    cost = np.minimum(cost + np.nan_to_num(apart) / SHAPE_ERROR, IMPOSSIBLE)
     best = _assigned(cost, unpaired)
+    if unlike is not None:
+        best = _in_order(best, cost, near[:, 0], frequencies)
     total = _cost(cost, best, unpaired)
     others: list[tuple[IntArray, float]] = []
     for number, chosen in enumerate(best):
@@ -96,9 +108,121 @@ def paired(
         without[number, chosen] = IMPOSSIBLE
         other = _assigned(without, unpaired)
         dearer = _cost(cost, other, unpaired) - total
+        known = (best >= 0) & (other >= 0)
+        moved = np.abs(np.log(frequencies[other[known]] / frequencies[best[known]]))
+        if unlike is not None and (known.sum() == len(best)) and moved.max() < COUPLING:
+            continue
         if dearer < DOUBTFUL and not any(np.array_equal(other, one) for one, _ in others):
             others.append((other, total + dearer))
     return Pairing(best, table, total, tuple(sorted(others, key=lambda one: one[1])))
+
+
+def parts_of_others(log_f: FloatArray, shapes: FloatArray, number: int) -> FloatArray:
+    """What of other modes may be in the shape of one, by what no model has.
+
+    A perturbation of the stiffness mixes them by its share over the distance of their eigenvalues
+    (Fox and Kapoor, AIAA Journal 6, 1968); modes of the same frequency are any mixture.
+
+    Args:
+        log_f: of all modes [ln Hz], float[modes].
+        shapes: of these for the same modal mass, float[modes, points].
+        number: of the one.
+
+    Returns:
+        float[k, points], over the length of its own shape.
+    """
+    length = float(np.linalg.norm(shapes[number]))
+    distance = np.maximum(np.abs(log_f - log_f[number]), COUPLING)
+    size = COUPLING / distance
+    size[number] = 0.0
+    some = size > LEAST_PART
+    return np.asarray(size[some, None] * shapes[some] / max(length, 1e-300))
+
+
+def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float:
+    """1 - MAC of a measured and a computed shape in which there may be parts of other modes.
+
+    Args:
+        shape: measured, float[points]; NaN where a point did not.
+        own: computed, float[points].
+        parts: as `parts_of_others`, float[k, points].
+
+    >>> turned = np.array([0.6, 0.8])
+    >>> alone, beside = np.zeros((0, 2)), np.array([[0.0, 1.0]])
+    >>> round(unlike_mixed(turned, np.eye(2)[0], alone), 3)
+    0.64
+    >>> round(unlike_mixed(turned, np.eye(2)[0], beside), 3)
+    0.016
+    """
+    seen = np.isfinite(shape) & np.isfinite(own)
+    off, within = apart(shape[seen], own[seen], parts[:, seen])
+    whole = float(shape[seen] @ shape[seen])
+    if whole == 0.0:
+        return np.nan
+    left = float(off @ off)
+    if len(within):
+        # Woodbury's identity: what lies along the parts counts for less.
+        along = within @ off
+        spread = 0.5 * SHAPE_ERROR * whole * np.eye(len(within))
+        left -= float(along @ np.linalg.solve(spread + within @ within.T, along))
+    return left / whole
+
+
+def unlike_computed(shape: FloatArray, log_f: FloatArray, shapes: FloatArray) -> FloatArray:
+    """The same of a measured shape and all computed ones, float[computed].
+
+    Args:
+        shape: measured, float[points].
+        log_f: of the computed modes [ln Hz], float[computed].
+        shapes: of these for the same modal mass, float[computed, points].
+    """
+    whole = float(shape @ shape)
+    if whole == 0.0:
+        return np.full(len(shapes), np.nan)
+    lengths = np.maximum((shapes**2).sum(1), 1e-300)
+    alike = (shapes @ shape) ** 2 / lengths / whole
+    close = np.abs(log_f[:, None] - log_f) < COUPLING / LEAST_PART
+    # Parts of others add about their own MAC at the most.
+    more = close @ alike - alike
+    found = np.asarray(1.0 - alike)
+    for number in np.flatnonzero(np.minimum(more, found) > 0.5 * SHAPE_ERROR):
+        parts = parts_of_others(log_f, shapes, int(number))
+        found[number] = unlike_mixed(shape, shapes[number], parts)
+    return found
+
+
+def apart(shape: FloatArray, own: FloatArray, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What of a shape, and of parts of others, is not along its own.
+
+    Args:
+        shape, own: float[points].
+        parts: for a shape of length one, float[k, points].
+
+    Returns:
+        float[points], and float[k, points] for the length of this shape.
+    """
+    length = float(own @ own)
+    if length == 0.0:
+        return shape, parts
+    size = float(np.linalg.norm(shape))
+    off = shape - own * (float(own @ shape) / length)
+    return off, size * (parts - np.outer(parts @ own / length, own))
+
+
+def freedom_of_parts(parts: FloatArray, spread: float) -> float:
+    """Half the logarithm of the determinant that parts of random size add to deviations."""
+    sizes = np.linalg.svd(parts / spread, compute_uv=False) if len(parts) else np.zeros(0)
+    return 0.5 * float(np.log1p(sizes**2).sum())
+
+
+def without_parts(off: FloatArray, parts: FloatArray, spread: float) -> FloatArray:
+    """Deviations over their spread, where parts of random size are among them: whitened."""
+    if not len(parts):
+        return np.asarray(off / spread)
+    along, sizes, _ = np.linalg.svd(parts.T / spread, full_matrices=False)
+    shrunk = 1.0 - 1.0 / np.sqrt(1.0 + sizes**2)
+    white = off / spread
+    return np.asarray(white - along @ (shrunk * (along.T @ white)))
 
 
 def turned(
@@ -135,6 +259,23 @@ def turned(
 def _mac(one: Expected, shape: FloatArray) -> float:
     seen = np.isfinite(shape[one.at])
     return mac(one.shape[seen], shape[one.at][seen]) if seen.any() else np.nan
+
+
+def _in_order(
+    best: IntArray, cost: FloatArray, near: FloatArray, frequencies: FloatArray
+) -> IntArray:
+    """A pairing in which close modes, where shapes do not decide, keep the order of frequencies."""
+    order = np.argsort(near, kind="stable")
+    for low, high in pairwise(order):
+        pair, chosen = np.array([low, high]), best[[low, high]]
+        if (chosen < 0).any() or np.log(near[high] / near[low]) > COUPLING:
+            continue
+        if frequencies[chosen[0]] <= frequencies[chosen[1]]:
+            continue
+        if cost[pair, chosen[::-1]].sum() < cost[pair, chosen].sum() + DOUBTFUL:
+            best = best.copy()
+            best[pair] = chosen[::-1]
+    return best
 
 
 def _assigned(cost: FloatArray, unpaired: float) -> IntArray:

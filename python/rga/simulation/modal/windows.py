@@ -1,6 +1,6 @@
 """Modes of a record by name: in every window the most probable pairing with what is expected."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,7 @@ import polars as pl
 from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected, paired
+from rga.simulation.modal.pairing import Expected, paired, parts_of_others, unlike_mixed
 
 #: cost of a pair beyond which an entry is none of the expected modes: four standard deviations in
 #: frequency, say, or a MAC below 0.6
@@ -85,9 +85,16 @@ def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expect
     alike = np.full(len(record), np.nan)
     windows = record.windows
     doubtful = []
+    parts = _parts(looks, len(model.points))
     for window in range(windows.max(initial=-1) + 1):
         entries = np.flatnonzero(windows == window)
-        pairing = paired(looks, record.frequency[entries], shapes[entries], MOST_COST)
+        unlike = np.array(
+            [
+                [unlike_mixed(look.shape, one[look.at], own) for one in shapes[entries]]
+                for look, own in zip(looks, parts, strict=True)
+            ]
+        )
+        pairing = paired(looks, record.frequency[entries], shapes[entries], MOST_COST, unlike)
         if pairing.others:
             doubtful.append(window)
         for number, chosen in enumerate(pairing.computed):
@@ -106,6 +113,16 @@ def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expect
             readings[windows[entry], at] = shapes[entry, point] * _scale(look, shapes[entry])
     times = np.array([record.time[windows == one][0] for one in range(len(readings))])
     return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64))
+
+
+def _parts(looks: Sequence[Expected], points: int) -> list[FloatArray]:
+    """What of the other modes expected may be in each, float[k, points of it]."""
+    every = np.zeros((len(looks), points))
+    for number, look in enumerate(looks):
+        length = float(np.linalg.norm(look.shape))
+        every[number, look.at] = look.shape / max(length, 1e-300)
+    log_f = np.log([look.near for look in looks])
+    return [parts_of_others(log_f, every[:, look.at], number) for number, look in enumerate(looks)]
 
 
 def _scale(look: Expected, shape: FloatArray) -> float:

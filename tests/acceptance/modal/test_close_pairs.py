@@ -1,0 +1,33 @@
+"""Bending modes of a mast with three legs come in pairs that nothing but scatter tells apart.
+
+The truth is a frame with scatter, solved by plain NumPy; who analyses it holds members that are all
+alike: the pairs have the same frequency, and shapes that may be any mixture.
+"""
+
+import numpy as np
+import pytest
+
+from independent.modal_bridge import Hidden, measured
+from independent.modal_mast import mast
+from rga.diagnosis import diagnose_modes
+from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.trials import ModalTrials
+
+
+def test_pairs_are_paired_without_doubt() -> None:
+    model, record = measured(0, Hidden(), modes=7, structure=mast)
+    readings = ModalReadings.of(model, record)
+    near = np.array([look.near for look in readings.looks])
+    assert (np.diff(np.log(near)) < 0.004).sum() == 3
+    assert (readings.doubtful, readings.unnamed) == (0, 0)
+    found = ModalTrials(model, readings).predict({})
+    assert found.doubtful == 0
+    one, other, alone, *rest = found.number.tolist()
+    assert ({one, other}, alone, set(rest[:2]), set(rest[2:])) == ({0, 1}, 2, {3, 4}, {5, 6})
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", [0, 1])
+def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
+    findings = diagnose_modes(*measured(seed, Hidden(), modes=7, structure=mast))
+    assert findings.causes == []
