@@ -7,7 +7,8 @@ import pytest
 
 import rga
 from independent.dense_modes import dense_modes
-from rga.model import Model
+from rga.model import Model, read_effect
+from rga.model.schema import ContextVariable
 
 TIGHT = 1e-9
 
@@ -142,3 +143,13 @@ def test_without_mass_nothing_swings() -> None:
     build.add_member("a", "b", "bar").support("a", "pinned").support("b", "uz")
     with pytest.raises(rga.InputError, match="nothing that can move has a mass"):
         rga.modes(build.build())
+
+
+def test_loads_whose_size_is_measured_are_no_part_of_what_swings() -> None:
+    model = random_frame(0)
+    loaded = model.model_copy(
+        update={"context": {"crane": ContextVariable(unit="kN", range=(0, 9))}}
+    )
+    crane = {"kind": "nodal_load", "forces": {"30": [0, 0, -1]}, "factor": {"context": "crane"}}
+    loaded = loaded.extended({"crane": read_effect(crane, "crane")})
+    assert rga.modes(loaded, 4).frequencies.tolist() == rga.modes(model, 4).frequencies.tolist()
