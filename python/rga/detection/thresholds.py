@@ -74,8 +74,8 @@ class TailModel:
             rows: of it.
             arl0: as above.
         """
-        heights = (logs(peaks) - self.location) / self.scale
-        hardly = heights > np.log(rows / self.rows / HARDLY)
+        height = (logs(peaks) - self.location) / self.scale
+        hardly = height > np.log(rows / self.rows / HARDLY)
         return np.maximum(self.thresholds(arl0), np.where(hardly, peaks, 0.0))
 
     def chance(self, peaks: FloatArray, rows: int) -> float:

@@ -65,7 +65,7 @@ def test_noise_too_slow_for_a_memory_raises_no_more_alarms() -> None:
 
 
 def test_what_sensors_miss_together_in_the_baseline_is_usual() -> None:
-    """Once in 300 rows twenty are off at once, which no simulated stream is: 51 alarms without."""
+    """Once in 300 rows twenty are off at once, which no simulated stream is."""
     arl0, draws, alarms = 10_000, 4, 0
     for draw in range(draws):
         generator = np.random.default_rng(800 + draw)
