@@ -88,9 +88,7 @@ def paired(
         unlike: 1 - MAC of all pairs where close modes may be mixed, as `unlike_mixed` has it,
             float[expected, computed]; None: as they are.
     """
-    table = np.array([[_mac(one, shape) for shape in shapes] for one in expected]).reshape(
-        len(expected), len(shapes)
-    )
+    table = np.array([_macs(one, shapes) for one in expected]).reshape(len(expected), len(shapes))
     near = np.array([one.near for one in expected])[:, None]
     within = np.array([one.within for one in expected])[:, None]
     cost = 0.5 * (np.log(frequencies / near) / within) ** 2
@@ -155,17 +153,13 @@ def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float
     0.016
     """
     seen = np.isfinite(shape) & np.isfinite(own)
-    off, within = apart(shape[seen], own[seen], parts[:, seen])
     whole = float(shape[seen] @ shape[seen])
     if whole == 0.0:
         return np.nan
-    left = float(off @ off)
-    if len(within):
-        # Woodbury's identity: what lies along the parts counts for less.
-        along = within @ off
-        spread = 0.5 * SHAPE_ERROR * whole * np.eye(len(within))
-        left -= float(along @ np.linalg.solve(spread + within @ within.T, along))
-    return left / whole
+    off, within = apart(shape[seen], own[seen], parts[:, seen])
+    spread = np.sqrt(0.5 * SHAPE_ERROR * whole)
+    white = without_parts(off, within, spread)
+    return float(white @ white) * 0.5 * SHAPE_ERROR
 
 
 def unlike_computed(shape: FloatArray, log_f: FloatArray, shapes: FloatArray) -> FloatArray:
@@ -256,9 +250,15 @@ def turned(
     return found
 
 
-def _mac(one: Expected, shape: FloatArray) -> float:
-    seen = np.isfinite(shape[one.at])
-    return mac(one.shape[seen], shape[one.at][seen]) if seen.any() else np.nan
+def _macs(one: Expected, shapes: FloatArray) -> FloatArray:
+    """Of a mode and shapes, float[computed]; NaN where no point of it has been measured."""
+    there = shapes[:, one.at]
+    seen = np.isfinite(there)
+    own = np.where(seen, there, 0.0)
+    lengths = (own**2).sum(1) * (seen @ one.shape**2)
+    along = (own @ one.shape) ** 2
+    alike = np.divide(along, lengths, out=np.zeros(len(shapes)), where=lengths > 0)
+    return np.where(seen.any(axis=1), alike, np.nan)
 
 
 def _in_order(

@@ -1,5 +1,7 @@
 """The likelihood of measured modes is that of a dense covariance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ from independent.modal_bridge import Hidden, measured
 from rga.diagnosis.modal.fit import fitted
 from rga.diagnosis.modal.likelihood import CHANGE_ERROR, ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
-from rga.diagnosis.modal.trials import ModalTrials
+from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.model.effects.members.elastic_modulus import ElasticModulus
+from rga.simulation.modal.pairing import apart
 
 
 @pytest.fixture(scope="module")
@@ -21,9 +24,20 @@ def dense(likelihood: ModalLikelihood, mode: int, change: float) -> np.ndarray:
     """Covariance of the windows in which a mode was found."""
     readings = likelihood.readings
     seen = np.flatnonzero(np.isfinite(readings.log_f[:, mode]))
-    apart = np.abs(seen[:, None] - seen)
-    noise = readings.scatter[mode] ** 2 * readings.memory[mode] ** apart
+    steps = np.abs(seen[:, None] - seen)
+    noise = readings.scatter[mode] ** 2 * readings.memory[mode] ** steps
     return np.asarray(noise + likelihood.level**2 + (CHANGE_ERROR * change) ** 2)
+
+
+def shape(
+    likelihood: ModalLikelihood, mode: int, prediction: Prediction
+) -> tuple[np.ndarray, np.ndarray]:
+    """What of a measured shape is not along the predicted one, and its covariance."""
+    look = likelihood.readings.looks[mode]
+    own = likelihood.trials.at_points(prediction.shapes[[mode]])[0, look.at]
+    off, parts = apart(look.shape, own, prediction.parts[mode])
+    spread = likelihood.shape_spread(mode) ** 2 * np.eye(len(off))
+    return off, spread + parts.T @ parts
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.8])
@@ -40,8 +54,9 @@ def test_squares_and_freedom_are_those_of_the_dense_covariance(
         own, without = dense(likelihood, mode, change), dense(likelihood, mode, 0.0)
         square += float(off @ np.linalg.solve(own, off))
         freedom += 0.5 * float(np.linalg.slogdet(own)[1] - np.linalg.slogdet(without)[1])
-        apart = likelihood.shape_off(mode, prediction)
-        square += float(apart @ apart) / likelihood.shape_spread(mode) ** 2
+        (off, own), (_, without) = (shape(likelihood, mode, one) for one in (prediction, nothing))
+        square += float(off @ np.linalg.solve(own, off))
+        freedom += 0.5 * float(np.linalg.slogdet(own)[1] - np.linalg.slogdet(without)[1])
     residual = likelihood.residual(prediction)
     np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
     np.testing.assert_allclose(likelihood.freedom(prediction), freedom, rtol=1e-9, atol=1e-12)
@@ -49,9 +64,10 @@ def test_squares_and_freedom_are_those_of_the_dense_covariance(
 
 def test_shape_error_is_what_mac_lacks(likelihood: ModalLikelihood) -> None:
     prediction = likelihood.trials.predict({})
+    alone = replace(prediction, parts=tuple(one[:0] for one in prediction.parts))
     for mode in range(len(likelihood.readings.modes)):
-        apart = likelihood.shape_off(mode, prediction)
-        np.testing.assert_allclose(apart @ apart, 1.0 - prediction.mac[mode], atol=1e-12)
+        off = likelihood.shape_off(mode, alone) * likelihood.shape_spread(mode)
+        np.testing.assert_allclose(off @ off, 1.0 - prediction.mac[mode], atol=1e-12)
 
 
 def test_a_hidden_mode_counts_for_nothing(likelihood: ModalLikelihood) -> None:
