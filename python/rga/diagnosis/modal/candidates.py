@@ -18,8 +18,9 @@ from rga.model.effect import Effect
 EXPLAINING, MOVING = 15, 6
 #: beginnings that are distinguished, and windows that must lie on either side of one
 BEGINNINGS, EITHER = 30, 5
-#: prospects that are simulated at the size that they promise, and the farthest of these [prior sd]
-FARTHER, FARTHEST = 40, 4.0
+#: prospects that are simulated at the size that they promise, rounds of that, and the farthest
+#: that they may promise [prior sd]
+FARTHER, ROUNDS, FARTHEST = 40, 4, 6.0
 
 
 @dataclass(frozen=True)
@@ -122,26 +123,33 @@ def _farther(
     beside: tuple[Sequence[Hypothesis], FloatArray],
     left: FloatArray,
 ) -> ModalProspect:
-    """The same at the size that its trial promises, where that is simulated to fit better."""
-    if len(one.z) != 1 or one.z[0] == 0.0:
-        return one
+    """The same at the size that its trial promises, where that is simulated to fit better.
+
+    What changes much does so in its own way: the size is looked for in rounds, by secants.
+    """
     found, z = beside
-    there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, *one.z]))
-    if there is None:
-        return one
-    change = left - likelihood.residual(there)
-    size = float(change @ change)
-    if size == 0.0:
-        return one
-    times = float(change @ left) / size
-    farther = float(np.clip(one.z[0] * times, -FARTHEST, FARTHEST))
-    there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, farther]))
-    if there is None:
-        return one
-    rest = likelihood.residual(there)
-    score = _score(left, rest, left - rest, farther**2) + one.hypothesis.log_prior
-    score -= likelihood.freedom(there)
-    return replace(one, z=(farther,), score=score) if score > one.score else one
+    for _ in range(ROUNDS):
+        if len(one.z) != 1 or one.z[0] == 0.0:
+            break
+        there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, *one.z]))
+        if there is None:
+            break
+        change = left - likelihood.residual(there)
+        size = float(change @ change)
+        if size == 0.0:
+            break
+        times = float(change @ left) / size
+        farther = float(np.clip(one.z[0] * times, -FARTHEST, FARTHEST))
+        there = predicted(likelihood, [*found, one.hypothesis], np.array([*z, farther]))
+        if there is None:
+            break
+        rest = likelihood.residual(there)
+        score = _score(left, rest, left - rest, farther**2) + one.hypothesis.log_prior
+        score -= likelihood.freedom(there)
+        if score <= one.score:
+            break
+        one = replace(one, z=(farther,), score=score)
+    return one
 
 
 def _score(left: FloatArray, rest: FloatArray, change: FloatArray, prior: float) -> float:

@@ -13,8 +13,9 @@ from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.findings.criteria import Criteria
 
 #: prospects that are fitted whatever their kind: so many, or as many as are so near the best
-#: [log-odds], but not more than so many; and log-odds by which a score may be wrong
-FITTED, NEAR, MOST, ROUGHLY = 8, 12.0, 24, 30.0
+#: [log-odds, or a share of what it promises: what changes much is promised roughly], but not more
+#: than so many; and log-odds by which a score may be wrong
+FITTED, NEAR, SHARE, MOST, ROUGHLY = 8, 12.0, 0.1, 24, 30.0
 #: modes that speak for a cause: fewer are explained by anything
 MODES_A_CAUSE = 3
 #: coordinates beyond which a parameter is too unlikely for a rival by the data alone
@@ -90,7 +91,7 @@ def worth_fitting(promising: Sequence[ModalProspect]) -> list[ModalProspect]:
     for one in promising:
         kinds.setdefault(one.hypothesis.name, one)
     best = promising[0].score if promising else 0.0
-    near = sum(one.score > best - NEAR for one in promising)
+    near = sum(one.score > best - max(NEAR, SHARE * best) for one in promising)
     chosen = list(promising[: min(max(FITTED, near), MOST)])
     chosen += [one for one in kinds.values() if all(one is not other for other in chosen)]
     least = min(0.0, best - ROUGHLY)

@@ -12,7 +12,14 @@ from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
 from rga.model.schema import Model
 from rga.model.structure import Structure
-from rga.simulation.modal.pairing import paired, parts_of_others, unlike_computed
+from rga.simulation.modal.pairing import (
+    couplings,
+    mac,
+    mixture,
+    paired,
+    parts_of_others,
+    unlike_computed,
+)
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
 
@@ -22,8 +29,8 @@ SUPPORTS = 7
 BEYOND = 4
 #: shares of its frequency, in those that a mode may well differ by, within which it is looked for
 REACH = 3.0
-#: modes that are looked at, at most, and predictions that are kept
-MOST, KEPT = 200, 256
+#: modes that are looked at, at most, and states of the structure that are kept
+MOST, KEPT = 200, 512
 
 
 @dataclass(frozen=True)
@@ -103,12 +110,32 @@ class ModalTrials:
             InputError: the effects cannot be simulated, or leave no mode for one that was
                 measured.
         """
-        key = repr(effects)
-        if key not in self._known:
-            self._known[key] = self._predict(list(effects.values()))
-            if len(self._known) > KEPT:
-                del self._known[next(iter(self._known))]
-        return self._known[key]
+        time = self.readings.time
+        late = [one for one in effects.values() if one.onset is not None]
+        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
+        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
+        of_window = np.asarray(of_window).ravel()
+        log_f = np.empty((len(time), len(self.readings.modes)))
+        shares, states = [], []
+        for number, acting in enumerate(parts.T):
+            own = of_window == number
+            some = iter(acting)
+            now = [
+                one if one.onset is None else _partly(one, float(next(some)))
+                for one in effects.values()
+            ]
+            state = self._state([one for one in now if one is not None])
+            log_f[own] = self._weights[own] @ state.log_f
+            shares.append(float(own.mean()))
+            states.append(state)
+        first = states[int(np.argmax(shares))]
+        shapes = np.zeros_like(first.shapes)
+        for share, state in zip(shares, states, strict=True):
+            along = np.einsum("mna,mna->m", state.shapes, first.shapes)
+            shapes += share * np.sign(along)[:, None, None] * state.shapes
+        return Prediction(
+            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states), first.parts
+        )
 
     def energies(self) -> tuple[FloatArray, FloatArray]:
         """Shares of members in the modes: derivatives of ln f by logarithms of what they are.
@@ -154,32 +181,16 @@ class ModalTrials:
                 total += float(np.corrcoef(column[seen], log_f[seen])[0, 1] ** 2)
         return total
 
-    def _predict(self, effects: Sequence[Effect]) -> Prediction:
-        time = self.readings.time
-        late = [one for one in effects if one.onset is not None]
-        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
-        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
-        of_window = np.asarray(of_window).ravel()
-        log_f = np.empty((len(time), len(self.readings.modes)))
-        shares, states = [], []
-        for number, acting in enumerate(parts.T):
-            own = of_window == number
-            some = iter(acting)
-            now = [one if one.onset is None else _partly(one, float(next(some))) for one in effects]
-            state = self._state([one for one in now if one is not None])
-            log_f[own] = self._weights[own] @ state.log_f
-            shares.append(float(own.mean()))
-            states.append(state)
-        first = states[int(np.argmax(shares))]
-        shapes = np.zeros_like(first.shapes)
-        for share, state in zip(shares, states, strict=True):
-            along = np.einsum("mna,mna->m", state.shapes, first.shapes)
-            shapes += share * np.sign(along)[:, None, None] * state.shapes
-        return Prediction(
-            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states), first.parts
-        )
-
     def _state(self, effects: Sequence[Effect]) -> Prediction:
+        """The modes where effects act all the time, under the contexts that stand for all."""
+        key = repr(effects)
+        if key not in self._known:
+            self._known[key] = self._simulated(effects)
+            if len(self._known) > KEPT:
+                del self._known[next(iter(self._known))]
+        return self._known[key]
+
+    def _simulated(self, effects: Sequence[Effect]) -> Prediction:
         values: list[Values] = []
         rows = len(self._structures)
         for effect in effects:
@@ -218,8 +229,9 @@ class ModalTrials:
         at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
         frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
         log_f = np.log(frequencies)
+        coupled = couplings(log_f)
         unlike = np.array(
-            [unlike_computed(look.shape, log_f, at_points[:, look.at]) for look in looks]
+            [unlike_computed(look.shape, coupled, at_points[:, look.at]) for look in looks]
         )
         pairing = paired(looks, frequencies, at_points, unlike=unlike)
         if (pairing.computed < 0).any():
@@ -228,11 +240,19 @@ class ModalTrials:
                 f"no computed mode is left for {lacking!r}", "modes", "state more masses"
             )
         number = pairing.computed
+        turn = mixture(looks, number, log_f, at_points)
+        at_points[number] = turn @ at_points[number]
+        own = [at_points[one, look.at] for look, one in zip(looks, number, strict=True)]
         return Prediction(
             log_f[number],
-            moving[number],
+            np.tensordot(turn, moving[number], 1),
             number,
-            pairing.mac[np.arange(len(number)), number],
+            np.array(
+                [
+                    mac(look.shape, one) if len(look.at) else np.nan
+                    for look, one in zip(looks, own, strict=True)
+                ]
+            ),
             len(pairing.others),
             tuple(
                 parts_of_others(log_f, at_points[:, look.at], int(one))

@@ -108,18 +108,31 @@ def paired(
         dearer = _cost(cost, other, unpaired) - total
         known = (best >= 0) & (other >= 0)
         moved = np.abs(np.log(frequencies[other[known]] / frequencies[best[known]]))
-        if unlike is not None and (known.sum() == len(best)) and moved.max() < COUPLING:
+        if unlike is not None and known.all() and moved.max() < COUPLING:
+            continue
+        if unlike is not None and _reordered(best, other, near[:, 0]):
             continue
         if dearer < DOUBTFUL and not any(np.array_equal(other, one) for one, _ in others):
             others.append((other, total + dearer))
     return Pairing(best, table, total, tuple(sorted(others, key=lambda one: one[1])))
 
 
-def parts_of_others(log_f: FloatArray, shapes: FloatArray, number: int) -> FloatArray:
-    """What of other modes may be in the shape of one, by what no model has.
+def couplings(log_f: FloatArray) -> FloatArray:
+    """How much of each mode may be in the others, float[modes, modes]; none in itself.
 
-    A perturbation of the stiffness mixes them by its share over the distance of their eigenvalues
+    A perturbation of the stiffness mixes modes by its share over the distance of their eigenvalues
     (Fox and Kapoor, AIAA Journal 6, 1968); modes of the same frequency are any mixture.
+
+    Args:
+        log_f: of all modes [ln Hz], float[modes].
+    """
+    size = COUPLING / np.maximum(np.abs(log_f[:, None] - log_f), COUPLING)
+    np.fill_diagonal(size, 0.0)
+    return np.where(size > LEAST_PART, size, 0.0)
+
+
+def parts_of_others(log_f: FloatArray, shapes: FloatArray, number: int) -> FloatArray:
+    """What of other modes may be in the shape of one, by what no model has (`couplings`).
 
     Args:
         log_f: of all modes [ln Hz], float[modes].
@@ -130,10 +143,8 @@ def parts_of_others(log_f: FloatArray, shapes: FloatArray, number: int) -> Float
         float[k, points], over the length of its own shape.
     """
     length = float(np.linalg.norm(shapes[number]))
-    distance = np.maximum(np.abs(log_f - log_f[number]), COUPLING)
-    size = COUPLING / distance
-    size[number] = 0.0
-    some = size > LEAST_PART
+    size = couplings(log_f)[number]
+    some = size > 0.0
     return np.asarray(size[some, None] * shapes[some] / max(length, 1e-300))
 
 
@@ -162,27 +173,27 @@ def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float
     return float(white @ white) * 0.5 * SHAPE_ERROR
 
 
-def unlike_computed(shape: FloatArray, log_f: FloatArray, shapes: FloatArray) -> FloatArray:
+def unlike_computed(shape: FloatArray, coupled: FloatArray, shapes: FloatArray) -> FloatArray:
     """The same of a measured shape and all computed ones, float[computed].
 
     Args:
         shape: measured, float[points].
-        log_f: of the computed modes [ln Hz], float[computed].
-        shapes: of these for the same modal mass, float[computed, points].
+        coupled: how much of each computed mode may be in the others, as `couplings` has it.
+        shapes: of the computed modes for the same modal mass, float[computed, points].
     """
     whole = float(shape @ shape)
     if whole == 0.0:
         return np.full(len(shapes), np.nan)
-    lengths = np.maximum((shapes**2).sum(1), 1e-300)
-    alike = (shapes @ shape) ** 2 / lengths / whole
-    close = np.abs(log_f[:, None] - log_f) < COUPLING / LEAST_PART
-    # Parts of others add about their own MAC at the most.
-    more = close @ alike - alike
-    found = np.asarray(1.0 - alike)
-    for number in np.flatnonzero(np.minimum(more, found) > 0.5 * SHAPE_ERROR):
-        parts = parts_of_others(log_f, shapes, int(number))
-        found[number] = unlike_mixed(shape, shapes[number], parts)
-    return found
+    # All by products of shapes, as `apart` and `without_parts` for each of them.
+    products, along = shapes @ shapes.T, shapes @ shape
+    squares = np.maximum(np.diag(products), 1e-300)
+    sizes = coupled * np.sqrt(whole / squares)[:, None]
+    with_off = sizes * (along - products * (along / squares)[:, None])
+    own = products[:, :, None] * products[:, None, :] / squares[:, None, None]
+    within = sizes[:, :, None] * sizes[:, None, :] * (products - own)
+    within += 0.5 * SHAPE_ERROR * whole * np.eye(len(shapes))
+    explained = (with_off * np.linalg.solve(within, with_off[:, :, None])[:, :, 0]).sum(1)
+    return np.asarray(1.0 - (along**2 / squares + explained) / whole)
 
 
 def apart(shape: FloatArray, own: FloatArray, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -217,6 +228,38 @@ def without_parts(off: FloatArray, parts: FloatArray, spread: float) -> FloatArr
     shrunk = 1.0 - 1.0 / np.sqrt(1.0 + sizes**2)
     white = off / spread
     return np.asarray(white - along @ (shrunk * (along.T @ white)))
+
+
+def mixture(
+    expected: Sequence[Expected], computed: IntArray, log_f: FloatArray, shapes: FloatArray
+) -> FloatArray:
+    """The rotation of close modes by which they come nearest to what is expected.
+
+    Of modes whose frequencies are nearer than what is not modelled couples, none has a shape of its
+    own: a model that is changed a little turns them by any angle. Source: orthogonal Procrustes
+    problem, Schoenemann, Psychometrika 31, 1966.
+
+    Args:
+        expected: modes, each with a pair.
+        computed: number of the computed mode of each, int[expected].
+        log_f: of the computed modes [ln Hz], float[computed].
+        shapes: of these for the same modal mass at all points, float[computed, points].
+
+    Returns:
+        Orthogonal, float[expected, expected]: by it, shapes of the computed modes, in the order of
+        those expected, become those that are nearest.
+    """
+    rotation = np.eye(len(expected))
+    order = np.argsort(log_f[computed], kind="stable")
+    gaps = np.diff(log_f[computed[order]])
+    for close in np.split(order, np.flatnonzero(gaps > COUPLING) + 1):
+        if len(close) == 1:
+            continue
+        own = shapes[computed[close]]
+        alike = np.array([own[:, expected[one].at] @ expected[one].shape for one in close])
+        left, _, right = np.linalg.svd(alike)
+        rotation[np.ix_(close, close)] = left @ right
+    return rotation
 
 
 def turned(
@@ -276,6 +319,13 @@ def _in_order(
             best = best.copy()
             best[pair] = chosen[::-1]
     return best
+
+
+def _reordered(best: IntArray, other: IntArray, near: FloatArray) -> bool:
+    """Whether a pairing differs by the order of modes that are expected close to each other."""
+    changed = np.flatnonzero(best != other)
+    alike = np.array_equal(np.sort(best[changed]), np.sort(other[changed]))
+    return alike and bool(np.ptp(np.log(near[changed])) < COUPLING)
 
 
 def _assigned(cost: FloatArray, unpaired: float) -> IntArray:

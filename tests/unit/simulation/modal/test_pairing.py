@@ -3,7 +3,16 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.simulation.modal.pairing import Expected, paired, turned
+from rga.simulation.modal.pairing import (
+    Expected,
+    couplings,
+    mixture,
+    paired,
+    parts_of_others,
+    turned,
+    unlike_computed,
+    unlike_mixed,
+)
 
 POINTS = 12
 ALONG = np.linspace(0, 1, POINTS)
@@ -75,3 +84,37 @@ def test_where_modes_are_lacking_one_has_no_pair() -> None:
     shapes = waves(3)
     found = paired(expected(shapes, [4.0, 4.5, 9.0]), np.array([4.0, 9.0]), shapes[[0, 2]])
     assert found.computed.tolist() == [0, -1, 1]
+
+
+def rotation(angle: float) -> FloatArray:
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+
+
+def test_close_modes_are_turned_to_what_is_expected_by_any_angle() -> None:
+    shapes = waves(3)
+    modes, log_f = expected(shapes, [4.0, 4.0, 9.0]), np.log([4.0, 4.001, 9.0])
+    for angle in (0.7, -1.4, 3.0):
+        there = shapes[[1, 0, 2]]
+        there[:2] = rotation(angle) @ there[:2]
+        turn = mixture(modes, np.array([1, 0, 2]), log_f, there)
+        np.testing.assert_allclose(turn @ there[[1, 0, 2]], shapes, atol=1e-12)
+
+
+def test_modes_that_lie_apart_are_not_turned() -> None:
+    shapes = waves(2)
+    modes = expected(shapes, [4.0, 4.1])
+    turn = mixture(modes, np.arange(2), np.log([4.0, 4.1]), rotation(0.7) @ shapes)
+    np.testing.assert_array_equal(turn, np.eye(2))
+
+
+def test_mixtures_of_all_computed_modes_at_once_are_those_of_one_after_the_other() -> None:
+    draw = np.random.default_rng(5)
+    shapes, shape = draw.normal(size=(6, POINTS)), draw.normal(size=POINTS)
+    log_f = np.log([4.0, 4.001, 4.03, 4.2, 9.0, 9.1])
+    one_by_one = [
+        unlike_mixed(shape, own, parts_of_others(log_f, shapes, number))
+        for number, own in enumerate(shapes)
+    ]
+    at_once = unlike_computed(shape, couplings(log_f), shapes)
+    np.testing.assert_allclose(at_once, one_by_one, rtol=1e-12)
+    assert at_once[0] < 1.0 - (shape @ shapes[0]) ** 2 / (shape @ shape) / (shapes[0] @ shapes[0])

@@ -11,7 +11,8 @@ from rga.model.parameter import Factor, Parameter, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
-MEMBER, GROUP = Factor(0.5), Factor(0.2)
+#: a member, or all braces of a panel, may also be lost altogether
+MEMBER, GROUP = Factor(0.5, tail=0.5), Factor(0.2, tail=0.5)
 
 
 class MemberStiffness(Effect):
@@ -34,7 +35,7 @@ class MemberStiffness(Effect):
     )
     usual = (
         f"factor {MEMBER} of a member, {GROUP} of a group: a judgement, that half of a section may "
-        "be lost at one place and hardly all along a group"
+        "be lost at one place and hardly all along a group; more, to all of it, is rare"
     )
     structural = True
     takes_section = True
