@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -69,6 +70,8 @@ def main() -> None:
         aims=(100.0, 200.0),
     )  # fmt: skip
     case.write(given.folder)
+    # Who ends this process otherwise than by Ctrl-C ends what it has begun as well.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with ExitStack() as running:
         sender = begin(given.folder, given.port, running)
         page = f"http://127.0.0.1:{given.port}/"

@@ -31,3 +31,25 @@ def test_pairs_are_paired_without_doubt() -> None:
 def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
     findings = diagnose_modes(*measured(seed, Hidden(), modes=7, structure=mast))
     assert findings.causes == []
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("bay", ["braces 2", "braces 5"])
+def test_the_bay_that_has_lost_its_braces_is_named(bay: str) -> None:
+    hidden = Hidden(stiffness={bay: 0.05}, onset=20)
+    findings = diagnose_modes(*measured(0, hidden, modes=7, structure=mast))
+    (cause,) = findings.causes
+    assert cause.effect["group"] == bay
+    low, high = cause.effect["factor"]["ci90"]
+    assert low < 0.05 < high
+    assert cause.onset == pytest.approx(20 * 3600.0)
+
+
+@pytest.mark.thorough
+def test_the_one_brace_that_is_lost_is_named() -> None:
+    hidden = Hidden(stiffness={"2a-3b": 0.02}, onset=20)
+    findings = diagnose_modes(*measured(0, hidden, modes=7, structure=mast))
+    (cause,) = findings.causes
+    assert cause.effect["member"] == "2a-3b"
+    low, high = cause.effect["factor"]["ci90"]
+    assert low < 0.02 < high

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -41,7 +40,7 @@ def shown(tmp_path: Path) -> Iterator[Shown]:
     command += ["--folder", str(tmp_path / "live"), "--pace", "0.2"]
     process = subprocess.Popen(command)
     yield Shown(f"http://127.0.0.1:{port}")
-    process.send_signal(signal.SIGINT)
+    process.terminate()
     process.wait()
 
 

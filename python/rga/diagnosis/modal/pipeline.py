@@ -18,6 +18,7 @@ from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.search import ModalFound, search
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.search.laplace import effects_at
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.modal_arrays import ModalArrays
@@ -81,8 +82,15 @@ def _diagnosed(
     model: Model, record: ModalRecord, criteria: Criteria, seed: int, progress: Progress
 ) -> Findings:
     readings = ModalReadings.of(model, record)
-    likelihood = ModalLikelihood(ModalTrials(model, readings))
-    found = search(likelihood, modal_hypotheses(likelihood.trials), criteria, progress)
+    found = _searched(model, readings, criteria, progress)
+    if found.fit.hypotheses and (readings.doubtful or readings.unnamed):
+        # A structure that has changed may have modes that are hardly those expected.
+        looks = found.fit.likelihood.trials.looks(effects_at(found.fit.hypotheses, found.fit.z))
+        again = ModalReadings.of(model, record, looks)
+        if again.cost < readings.cost:
+            readings = again
+            found = _searched(model, readings, criteria, progress)
+    likelihood = found.fit.likelihood
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
@@ -120,6 +128,13 @@ def _diagnosed(
     )
     progress("done", 1.0)
     return findings
+
+
+def _searched(
+    model: Model, readings: ModalReadings, criteria: Criteria, progress: Progress
+) -> ModalFound:
+    likelihood = ModalLikelihood(ModalTrials(model, readings))
+    return search(likelihood, modal_hypotheses(likelihood.trials), criteria, progress)
 
 
 def estimated(fit: ModalFit, number: int) -> Effect:

@@ -1,5 +1,6 @@
 """Modes that were measured: frequencies window by window, their noise, and shapes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +48,7 @@ class ModalReadings:
         doubtful: windows of which another pairing is nearly as probable.
         unnamed: entries of the record that are none of the modes.
         uncovered: windows left out, as a context that drives the structure is not known then.
+        cost: of the pairs in all windows, as a negative logarithm of a probability.
     """
 
     record: ModalRecord
@@ -62,10 +64,22 @@ class ModalReadings:
     doubtful: int
     unnamed: int
     uncovered: int
+    cost: float
 
     @classmethod
-    def of(cls, model: Model, record: ModalRecord) -> "ModalReadings":
+    def of(
+        cls,
+        model: Model,
+        record: ModalRecord,
+        changed: Mapping[int, Mapping[str, Expected]] | None = None,
+    ) -> "ModalReadings":
         """The modes that a model expects, out of a record.
+
+        Args:
+            model: with modes.
+            record: of its structure.
+            changed: what modes look like in windows in which the structure is known to be another
+                than in the model, by number of the window among those that are covered.
 
         Raises:
             InputError: none was found, the model has no modes, or what drives the structure is
@@ -75,7 +89,7 @@ class ModalReadings:
         expected, every = simulator.expected, len(np.unique(record.time))
         record = _covered(record, simulator.needed, model)
         uncovered = every - len(np.unique(record.time))
-        named = named_modes(record, model, expected)
+        named = named_modes(record, model, expected, changed)
         names = [name for k, name in enumerate(expected) if (named.mode == k).any()]
         if not names:
             raise InputError(
@@ -122,6 +136,7 @@ class ModalReadings:
             doubtful=len(named.doubtful),
             unnamed=int((named.mode < 0).sum()),
             uncovered=uncovered,
+            cost=named.cost,
         )
 
     def label(self, moment: float) -> str | float:

@@ -1,18 +1,19 @@
 """What a model with effects predicts of the modes that were measured."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.simulation.modal.pairing import (
+    Expected,
     couplings,
     mac,
     mixture,
@@ -110,21 +111,10 @@ class ModalTrials:
             InputError: the effects cannot be simulated, or leave no mode for one that was
                 measured.
         """
-        time = self.readings.time
-        late = [one for one in effects.values() if one.onset is not None]
-        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
-        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
-        of_window = np.asarray(of_window).ravel()
-        log_f = np.empty((len(time), len(self.readings.modes)))
+        log_f = np.empty(self.readings.log_f.shape)
         shares, states = [], []
-        for number, acting in enumerate(parts.T):
-            own = of_window == number
-            some = iter(acting)
-            now = [
-                one if one.onset is None else _partly(one, float(next(some)))
-                for one in effects.values()
-            ]
-            state = self._state([one for one in now if one is not None])
+        for own, acting in self._stages(effects):
+            state = self._state(acting)
             log_f[own] = self._weights[own] @ state.log_f
             shares.append(float(own.mean()))
             states.append(state)
@@ -136,6 +126,39 @@ class ModalTrials:
         return Prediction(
             log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states), first.parts
         )
+
+    def looks(self, effects: Mapping[str, Effect]) -> dict[int, dict[str, Expected]]:
+        """What modes look like where effects act, by number of the window and name of the mode."""
+        found: dict[int, dict[str, Expected]] = {}
+        for own, acting in self._stages(effects):
+            if not acting:
+                continue
+            state = self._state(acting)
+            shapes = self.at_points(state.shapes)
+            for window in np.flatnonzero(own):
+                near = np.exp(self._weights[window] @ state.log_f)
+                found[int(window)] = {
+                    name: Expected(float(one), look.within, look.at, shape[look.at])
+                    for name, look, one, shape in zip(
+                        self.readings.modes, self.readings.looks, near, shapes, strict=True
+                    )
+                }
+        return found
+
+    def _stages(self, effects: Mapping[str, Effect]) -> Iterator[tuple[BoolArray, list[Effect]]]:
+        """Windows, bool[windows], with the effects that act in them, each as it acts there."""
+        time = self.readings.time
+        late = [one for one in effects.values() if one.onset is not None]
+        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
+        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
+        of_window = np.asarray(of_window).ravel()
+        for number, acting in enumerate(parts.T):
+            some = iter(acting)
+            now = [
+                one if one.onset is None else _partly(one, float(next(some)))
+                for one in effects.values()
+            ]
+            yield of_window == number, [one for one in now if one is not None]
 
     def energies(self) -> tuple[FloatArray, FloatArray]:
         """Shares of members in the modes: derivatives of ln f by logarithms of what they are.

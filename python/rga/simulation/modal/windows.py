@@ -29,6 +29,7 @@ class NamedModes:
             not found.
         mac: of the entries with their modes, float[entries]; NaN without shape.
         doubtful: windows of which another pairing is nearly as probable, int.
+        cost: of all pairs and of entries without one, as a negative logarithm of a probability.
     """
 
     time: FloatArray
@@ -36,6 +37,7 @@ class NamedModes:
     readings: FloatArray
     mac: FloatArray
     doubtful: IntArray
+    cost: float
 
 
 def summary(
@@ -69,25 +71,38 @@ def summary(
     return pl.DataFrame(lines, infer_schema_length=None)
 
 
-def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expected]) -> NamedModes:
+def named_modes(
+    record: ModalRecord,
+    model: Model,
+    expected: Mapping[str, Expected],
+    changed: Mapping[int, Mapping[str, Expected]] | None = None,
+) -> NamedModes:
     """Name the modes of a record by their shapes, and by frequency where they have none.
 
     Args:
         record: of this model.
         model: with modal sensors.
         expected: modes of the model, as a `ModalSimulator` has them.
+        changed: what the same modes look like in windows in which the structure is known to be
+            another.
     """
-    looks, names = list(expected.values()), list(expected)
+    names = list(expected)
+    changed = {} if changed is None else changed
     known = {name: number for number, name in enumerate(model.points)}
     shapes = np.full((len(record), len(model.points)), np.nan)
     shapes[:, [known[name] for name in record.points]] = record.shapes
     mode = np.full(len(record), -1, dtype=np.int64)
     alike = np.full(len(record), np.nan)
     windows = record.windows
-    doubtful = []
-    parts = _parts(looks, len(model.points))
+    doubtful, cost = [], 0.0
+    given = list(expected.values())
+    parts_of_given = _parts(given, len(model.points))
     for window in range(windows.max(initial=-1) + 1):
         entries = np.flatnonzero(windows == window)
+        looks, parts = given, parts_of_given
+        if window in changed:
+            looks = [changed[window].get(name, look) for name, look in expected.items()]
+            parts = _parts(looks, len(model.points))
         unlike = np.array(
             [
                 [unlike_mixed(look.shape, one[look.at], own) for one in shapes[entries]]
@@ -95,6 +110,7 @@ def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expect
             ]
         )
         pairing = paired(looks, record.frequency[entries], shapes[entries], MOST_COST, unlike)
+        cost += pairing.cost
         if pairing.others:
             doubtful.append(window)
         for number, chosen in enumerate(pairing.computed):
@@ -108,11 +124,11 @@ def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expect
             readings[windows[of_mode], at] = record.frequency[of_mode]
             continue
         point = known[sensor.point]
-        look = expected[sensor.mode]
         for entry in of_mode:
+            look = changed.get(int(windows[entry]), {}).get(sensor.mode, expected[sensor.mode])
             readings[windows[entry], at] = shapes[entry, point] * _scale(look, shapes[entry])
     times = np.array([record.time[windows == one][0] for one in range(len(readings))])
-    return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64))
+    return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64), cost)
 
 
 def _parts(looks: Sequence[Expected], points: int) -> list[FloatArray]:

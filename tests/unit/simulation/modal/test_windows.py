@@ -1,5 +1,6 @@
 """Modes found in windows get their names by their shapes, whatever their order and number."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,20 @@ def test_what_is_no_expected_mode_has_no_name(tmp_path: Path, model: Model) -> N
     )
     found = named_modes(record, model, ModalSimulator(model).expected)
     assert found.mode.tolist() == [0, -1, -1]
+
+
+def test_a_window_in_which_the_structure_is_another_has_modes_of_its_own(
+    tmp_path: Path, model: Model
+) -> None:
+    odd = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
+    record = read(table([(0, 4.05, SHAPES[0]), (1, 2.5, odd)]), tmp_path, model)
+    expected = ModalSimulator(model).expected
+    name, look = next(iter(expected.items()))
+    changed = {1: {name: replace(look, near=2.5, shape=odd[look.at])}}
+    as_expected = named_modes(record, model, expected)
+    found = named_modes(record, model, expected, changed)
+    assert (as_expected.mode.tolist(), found.mode.tolist()) == ([0, -1], [0, 0])
+    assert found.cost < as_expected.cost
 
 
 def test_points_that_did_not_measure_are_left_aside(tmp_path: Path, model: Model) -> None:
