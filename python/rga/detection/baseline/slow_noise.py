@@ -15,7 +15,7 @@ NINE_IN_TEN = 1.28
 #: what sums of residuals of a real structure vary more by, and blocks that say as much as knowing
 #: so: models of bridges leave 1.1 to 1.7 times what independent scores have, and a baseline of a
 #: few days cannot tell
-USUAL, WORTH = 0.35, 40
+USUAL, WORTH = 0.35, 12
 
 
 def long_run_variance(scores: FloatArray) -> float:

@@ -108,6 +108,11 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
             f"left out: {counted(readings.uncovered, 'window')} in which a context that drives the "
             "structure is not known"
         )
+    if readings.unsure:
+        warnings.append(
+            f"left out: {counted(readings.unsure, 'window')} in which another pairing of the modes "
+            "found is nearly as probable"
+        )
     if readings.record.left_out:
         warnings.append(f"columns that are not used: {', '.join(readings.record.left_out)}")
     if readings.unnamed:

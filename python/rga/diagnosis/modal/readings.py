@@ -19,6 +19,8 @@ UNKNOWN_SCATTER = 0.01
 LEAST_SCATTER = 2e-4
 #: windows that show a scatter by themselves
 REPEATS = 8
+#: share of windows that are left out where another pairing is nearly as probable; more are a doubt
+FEW = 0.1
 #: rounds in which shapes, of which each may lack points, are scaled onto their mean
 ROUNDS = 20
 #: median size of a normal variable, in its standard deviations
@@ -45,7 +47,8 @@ class ModalReadings:
             which has length one; without points where no shape was measured.
         shape_noise: what 1 - MAC of the mean shape is by noise, float[modes].
         found: share of the windows in which each mode was found, float[modes].
-        doubtful: windows of which another pairing is nearly as probable.
+        doubtful: windows of which another pairing is nearly as probable, where they are many.
+        unsure: such windows that are left out, where they are few.
         unnamed: entries of the record that are none of the modes.
         uncovered: windows left out, as a context that drives the structure is not known then.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
@@ -62,6 +65,7 @@ class ModalReadings:
     shape_noise: FloatArray
     found: FloatArray
     doubtful: int
+    unsure: int
     unnamed: int
     uncovered: int
     cost: float
@@ -90,7 +94,10 @@ class ModalReadings:
         record = _covered(record, simulator.needed, model)
         uncovered = every - len(np.unique(record.time))
         named = named_modes(record, model, expected, changed)
-        names = [name for k, name in enumerate(expected) if (named.mode == k).any()]
+        few = len(named.doubtful) <= FEW * len(named.time)
+        unsure = np.isin(record.windows, named.doubtful) & few
+        mode = np.where(unsure, -1, named.mode)
+        names = [name for k, name in enumerate(expected) if (mode == k).any()]
         if not names:
             raise InputError(
                 "none of the modes that the model expects is in the record",
@@ -107,7 +114,7 @@ class ModalReadings:
         points = {name: k for k, name in enumerate(model.points)}
         at = np.array([points[name] for name in record.points], dtype=np.int64)
         for column, number in enumerate(numbers):
-            own = np.flatnonzero(named.mode == number)
+            own = np.flatnonzero(mode == number)
             log_f[windows[own], column] = np.log(record.frequency[own])
             sd = record.frequency_sd[own] / record.frequency[own]
             if np.isfinite(sd).any():
@@ -133,7 +140,8 @@ class ModalReadings:
             looks=tuple(looks),
             shape_noise=shape_noise,
             found=np.isfinite(log_f).mean(0),
-            doubtful=len(named.doubtful),
+            doubtful=0 if few else len(named.doubtful),
+            unsure=len(np.unique(record.windows[unsure])),
             unnamed=int((named.mode < 0).sum()),
             uncovered=uncovered,
             cost=named.cost,

@@ -13,7 +13,9 @@ from rga.model.effect import Effect, Values, blend
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.simulation.modal.pairing import (
+    DOUBTFUL,
     Expected,
+    Pairing,
     couplings,
     mac,
     mixture,
@@ -30,6 +32,8 @@ SUPPORTS = 7
 BEYOND = 4
 #: shares of its frequency, in those that a mode may well differ by, within which it is looked for
 REACH = 3.0
+#: part of a frequency that a model leaves which is right in all that one can name
+RIGHT = 0.03
 #: modes that are looked at, at most, and states of the structure that are kept
 MOST, KEPT = 200, 512
 
@@ -276,12 +280,31 @@ class ModalTrials:
                     for look, one in zip(looks, own, strict=True)
                 ]
             ),
-            len(pairing.others),
+            sum(self._as_probable(pairing, other, log_f) for other in pairing.others),
             tuple(
                 parts_of_others(log_f, at_points[:, look.at], int(one))
                 for look, one in zip(looks, number, strict=True)
             ),
         )
+
+    def _as_probable(
+        self, pairing: Pairing, other: tuple[IntArray, float], log_f: FloatArray
+    ) -> bool:
+        """Whether another pairing would be nearly as probable in a model that is right.
+
+        Pairs are made for models that are wrong by as much as a mode may well differ.
+        """
+        computed, cost = other
+        log_near = np.log([look.near for look in self.readings.looks])
+        within = np.array([look.within for look in self.readings.looks])
+        told = np.minimum(within, RIGHT) ** -2.0 - within**-2.0
+        known = (computed >= 0) & (pairing.computed >= 0)
+        squares = [
+            np.where(known, (log_f[one] - log_near) ** 2, 0.0)
+            for one in (computed, pairing.computed)
+        ]
+        dearer = cost - pairing.cost + 0.5 * float(told @ (squares[0] - squares[1]))
+        return dearer < DOUBTFUL
 
     def at_points(self, shapes: FloatArray) -> FloatArray:
         """Motion of shapes float[modes, nodes, 3] at the points, float[modes, points]."""
