@@ -50,6 +50,19 @@ def test_windows_without_what_drives_the_structure_are_left_out() -> None:
         ModalReadings.of(model, replace(record, contexts={"frost": np.full(len(record), np.nan)}))
 
 
+@pytest.mark.parametrize("without", [2, 12])
+def test_windows_in_doubt_are_left_out_where_they_are_few(without: int) -> None:
+    """Where no shape was measured, frequencies decide nothing between neighbours."""
+    model, record = measured(1, Hidden(), windows=20)
+    shapes = np.where(record.windows[:, None] < without, np.nan, record.shapes)
+    readings = ModalReadings.of(model, replace(record, shapes=shapes))
+    found = np.isfinite(readings.log_f[:without]).any()
+    if without == 2:
+        assert (readings.unsure, readings.doubtful, found) == (without, 0, False)
+    else:
+        assert (readings.unsure, readings.doubtful, found) == (0, without, True)
+
+
 def test_a_record_of_other_modes_is_refused() -> None:
     model, record = measured(1, Hidden())
     other = model.model_copy(
