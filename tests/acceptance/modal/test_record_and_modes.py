@@ -19,8 +19,7 @@ GROUPS = {member["groups"][0] for member in bridge()["members"].values()}
 #: window in which it is
 ONSET = 20
 DECK = {f"b{at}{side}": 400.0 for at in range(7) for side in "ns"}
-SEEDS = [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))]
-THOROUGH = [pytest.param(seed, marks=thorough) for seed in range(4)]
+THOROUGH = [pytest.param(seed, marks=thorough) for seed in range(6)]
 
 
 @cache
@@ -85,7 +84,7 @@ def test_nothing_is_named_where_nothing_is_hidden(make: Callable[[], Hidden], se
     assert findings.verdict in ("nothing_wrong", "unknown")
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", [0, *THOROUGH[1:]])
 def test_modes_tell_a_stiffer_bridge_from_lighter_loads(seed: int) -> None:
     assert kinds(by_gauges(seed, stiffer)) == {"elastic_modulus", "load_scale"}
     cause = diagnosed(seed, stiffer).causes[0]
@@ -127,7 +126,7 @@ def test_a_cause_of_each_is_named_with_its_size() -> None:
         assert low - 0.05 < size < high + 0.05
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", THOROUGH)
 def test_a_record_behind_an_onset_has_it_from_the_modes(seed: int) -> None:
     model, record, modal = mixed(seed, weak_post_later())
     findings = diagnose(model, replace(record, start=3600.0 * 30), modal=modal)

@@ -96,6 +96,7 @@ def test_cuts_and_restarts_change_nothing(seed: int, measured: Stream, tmp_path:
     assert_same(played_somehow(measured, tmp_path, Random(seed)), measured.expected)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(max(1, CUTS // 10)))
 def test_nor_do_they_where_contexts_are_inferred(seed: int, latent: Stream, tmp_path: Path) -> None:
     assert_same(played_somehow(latent, tmp_path, Random(seed)), latent.expected)

@@ -72,6 +72,7 @@ def test_what_an_excluded_sensor_reads_changes_nothing(
     assert np.isfinite(found.gaps[:BROKEN, column]).all()
 
 
+@pytest.mark.thorough
 def test_nor_where_contexts_are_inferred_from_the_others(
     small_stream: Callable[..., Path], tmp_path: Path
 ) -> None:

@@ -1,6 +1,6 @@
 """Modes that were measured: frequencies window by window, their noise, and shapes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -175,7 +175,9 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
 
     Returns:
         The mean, of length one, float[k]; the points where something was measured, int[k]; and
-        what 1 - MAC of the mean is by the scatter of the entries.
+        what 1 - MAC of the mean is by the scatter of the entries. What differs by more between
+        entries that lie apart in time than between one and the next is a shape that changes: of
+        that no number of entries has a mean that is the shape.
 
     >>> mean, at, noise = mean_shape(np.array([[0.0, 2.0], [0.0, -2.0]]), np.array([1.0, 1.0]))
     >>> mean.tolist(), at.tolist(), noise
@@ -204,8 +206,22 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
         reference = np.where(np.isfinite(stacked).any(0), mean, np.nan)
     mean = np.nan_to_num(reference)
     mean = mean / np.linalg.norm(mean)
-    off = [1.0 - mac(one[both], mean[both]) for one in shapes if (both := np.isfinite(one)).any()]
-    return mean, seen, float(np.mean(off)) / max(len(off) - 1, 1) if len(off) > 1 else 0.0
+    off = _unlike(shapes, [mean] * len(shapes))
+    if len(off) < 2:
+        return mean, seen, 0.0
+    noise = float(np.mean(off))
+    # Of two entries each has its own noise.
+    next_to_each_other = 0.5 * float(np.mean(_unlike(shapes[1:], shapes[:-1]) or [0.0]))
+    return mean, seen, noise / (len(off) - 1) + max(noise - next_to_each_other, 0.0)
+
+
+def _unlike(ones: Iterable[FloatArray], others: Iterable[FloatArray]) -> list[float]:
+    """1 - MAC of pairs, at the points that both have."""
+    pairs = (
+        (one, other, np.isfinite(one) & np.isfinite(other))
+        for one, other in zip(ones, others, strict=True)
+    )
+    return [1.0 - mac(one[both], other[both]) for one, other, both in pairs if both.any()]
 
 
 def _reference(given: Expected, at: IntArray) -> FloatArray:
