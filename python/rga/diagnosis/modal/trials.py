@@ -142,7 +142,7 @@ class ModalTrials:
             for window in np.flatnonzero(own):
                 near = np.exp(self._weights[window] @ state.log_f)
                 found[int(window)] = {
-                    name: Expected(float(one), look.within, look.at, shape[look.at])
+                    name: Expected(float(one), min(look.within, RIGHT), look.at, shape[look.at])
                     for name, look, one, shape in zip(
                         self.readings.modes, self.readings.looks, near, shapes, strict=True
                     )
