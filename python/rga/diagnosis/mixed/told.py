@@ -14,7 +14,7 @@ from rga.diagnosis.mixed.search import MixedFound
 from rga.diagnosis.modal.account import by_sensor, mode_gap, mode_groups, mode_readings
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
-from rga.diagnosis.modal.doubts import drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.noise.covariance import Reduced
@@ -62,7 +62,7 @@ class ToldModes:
             before, after = self._left_out
             if after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
-            words += thin(readings, causes=True)
+            words += thin(readings, causes=True) + doubtful_windows(readings)
         alone = [number for number in shown if not self._in_record(number)]
         words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
         return words + drifting(likelihood, self._after)

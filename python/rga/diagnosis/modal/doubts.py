@@ -43,6 +43,17 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
     return words
 
 
+def doubtful_windows(readings: ModalReadings) -> list[str]:
+    """In words: that the names of modes are in doubt in many windows."""
+    if not readings.doubtful:
+        return []
+    words = (
+        f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
+        "found is nearly as probable"
+    )
+    return [words]
+
+
 def drifting(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
     """In words: frequencies that go on changing, which causes and contexts leave unexplained."""
     readings = likelihood.readings

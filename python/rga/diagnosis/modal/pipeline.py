@@ -11,7 +11,7 @@ from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
-from rga.diagnosis.modal.doubts import drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
@@ -99,11 +99,7 @@ def _diagnosed(
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
-    if readings.doubtful:
-        doubts.append(
-            f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
-            "found is nearly as probable"
-        )
+    doubts += doubtful_windows(readings)
     effects = [estimated(found.fit, number) for number in range(len(found.fit.hypotheses))]
     extended = model.extended({cause_name(model, effect): effect for effect in effects})
     findings = Findings(
