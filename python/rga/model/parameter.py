@@ -149,26 +149,29 @@ class Factor:
 
     Attributes:
         spread: standard deviation of its logarithm where that is small.
-        tail: of values far from one, which are likelier the larger it is; 0: log-normal. The
-            logarithm is that of Jones and Pewsey (Sinh-arcsinh distributions, Biometrika 96,
-            2009): near one it is as good as normal, and what is lost altogether remains possible.
+        tail: of values more than one standard deviation away, which are likelier the larger it
+            is; 0: log-normal. Beyond, the logarithm is that of Jones and Pewsey (Sinh-arcsinh
+            distributions, Biometrika 96, 2009): what is lost altogether remains possible.
 
     >>> Factor(0.3).value(0.0), str(Factor(0.3))
     (1.0, '0.61 to 1.6')
     >>> round(Factor(0.2).z(0.05), 1), round(Factor(0.2, tail=0.5).z(0.05), 1)
-    (-15.0, -5.4)
+    (-15.0, -6.3)
     """
 
     spread: float
     tail: float = 0.0
 
     def value(self, z: float) -> float:
-        usual = np.sinh(self.tail * z) / self.tail if self.tail else z
-        return float(np.exp(self.spread * usual))
+        far = max(abs(z) - 1.0, 0.0) if self.tail else 0.0
+        beyond = np.sinh(self.tail * far) / self.tail if far else 0.0
+        return float(np.exp(self.spread * np.copysign(abs(z) - far + beyond, z)))
 
     def z(self, value: float) -> float:
         usual = float(np.log(value)) / self.spread
-        return float(np.arcsinh(self.tail * usual)) / self.tail if self.tail else usual
+        beyond = max(abs(usual) - 1.0, 0.0) if self.tail else 0.0
+        far = float(np.arcsinh(self.tail * beyond)) / self.tail if beyond else 0.0
+        return float(np.copysign(abs(usual) - beyond + far, usual))
 
     @property
     def trials(self) -> tuple[float, ...]:

@@ -11,8 +11,8 @@ from rga.model.parameter import Factor, Parameter, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
-#: all braces of a panel may also be lost at once
-MEMBER, GROUP = Factor(0.5), Factor(0.2, tail=0.5)
+#: a member, or all braces of a panel, may also be lost altogether
+MEMBER, GROUP = Factor(0.5, tail=0.5), Factor(0.2, tail=0.5)
 
 
 class MemberStiffness(Effect):
