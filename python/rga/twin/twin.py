@@ -40,7 +40,8 @@ class Twin:
     """A twin, now or as it stood: its model, its context, its history, and what it answers.
 
     Nothing but a response changes it; `rollback` asks for one. It reads its repository when it is
-    asked, and holds no lock: `close` it, use it in a `with` block, or leave it to Python.
+    asked, as that stood when the twin was opened, whatever is added meanwhile. It holds no lock:
+    `close` it, use it in a `with` block, or leave it to Python.
 
     Args:
         view: a run of a repository.
@@ -56,9 +57,9 @@ class Twin:
     def __init__(
         self, view: RunView, place: str | Path, repository: Repository | None = None
     ) -> None:
-        self._view, self._place, self._repository = view, place, repository
-        self.station, self.given = station_of(view), given_model(view)
-        self.state: TwinState = replay(view, self.station.channels)
+        self._view, self._place, self._repository = view.at_step(view.steps), place, repository
+        self.station, self.given = station_of(self._view), given_model(self._view)
+        self.state: TwinState = replay(self._view, self.station.channels)
 
     @classmethod
     def open(cls, place: str | Path, source: str | None = None) -> Self:

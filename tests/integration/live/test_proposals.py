@@ -81,6 +81,24 @@ def test_what_is_accepted_is_what_is_adopted_at_once(
         assert proposals(at_once) == ()
 
 
+def test_an_opened_twin_stays_as_it_stood_while_others_go_on(
+    sinks: Given, taken_in: TakenIn
+) -> None:
+    place = taken_in(sinks, 90, adopt="ask")
+    with rga.Twin.open(place) as before:
+        history_before, log, status = before.history(), before.log(), before.status()
+        carry_out(place, Accept(who="Ada"))
+        assert_same(before.history(), history_before)
+        assert before.history().versions == history_before.versions
+        assert before.log() == log
+        assert before.status() == status
+        assert before.commands() == ()
+    with rga.Twin.open(place) as after:
+        assert after.version == 2
+        assert [one.number for one in after.history().versions] == [1, 2]
+        assert len(after.commands()) == 1
+
+
 def test_the_rows_after_it_are_followed_as_if_adopted_at_once(
     sinks: Given, taken_in: TakenIn
 ) -> None:

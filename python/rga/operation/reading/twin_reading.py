@@ -91,10 +91,9 @@ class TwinReading:
             if view is None:
                 return None
             if self._twin is None or view.steps != self._steps:
-                # It is told apart by its number of steps, which a step at this moment may raise.
-                steps = view.steps
-                self._twin, self._now = Twin(view, self.place), None
-                self._steps = steps
+                # All that is read of it is of one step, whatever is added at this moment.
+                self._steps = view.steps
+                self._twin, self._now = Twin(view.at_step(self._steps), self.place), None
             return self._twin
 
     def now(self) -> TwinNow | None:
@@ -108,7 +107,7 @@ class TwinReading:
             if twin is None:
                 return None
             if self._now is None:
-                view = self._begun()
+                view = self._begun().at_step(self._steps)
                 self._now = twin_now(twin, view, dict(zip(*self._noise_by_name(twin), strict=True)))
             return self._now
 
@@ -164,7 +163,7 @@ class TwinReading:
             twin = self.twin
             if twin is None:
                 return None
-            view = self._begun()
+            view = self._begun().at_step(self._steps)
             channels, contexts = twin.station.channels, tuple(twin.given.context)
             measured, followed = self._grown(view, twin)
             first, last = view.row_at(begin), view.row_at(end) + 1
