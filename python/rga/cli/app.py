@@ -26,6 +26,7 @@ from rga.cli.operation.user import user
 from rga.cli.preparation.check import check
 from rga.cli.preparation.draw import draw
 from rga.cli.preparation.example import example
+from rga.cli.preparation.free_decay import free_decay
 from rga.cli.preparation.import_model import import_model
 from rga.cli.preparation.import_record import import_record
 from rga.cli.schema import schema
@@ -46,9 +47,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
-    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, modes, whatif,
-    dataset, verify, schema, doctor,
+    example, import_model, import_record, free_decay, check, draw, diagnose, diagnose_many, plan,
+    run, status, replay, accept, reject, rollback, export, serve, user, feed, simulate, results,
+    modes, whatif, dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -12,6 +12,7 @@ from independent.modal_mast import mast
 from rga.diagnosis import diagnose_modes
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials
+from rga.model import read_effect
 
 
 def test_pairs_are_paired_without_doubt() -> None:
@@ -24,6 +25,21 @@ def test_pairs_are_paired_without_doubt() -> None:
     assert found.doubtful == 0
     one, other, alone, *rest = found.number.tolist()
     assert ({one, other}, alone, set(rest[:2]), set(rest[2:])) == ({0, 1}, 2, {3, 4}, {5, 6})
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_a_record_is_read_again_by_a_cause_that_is_there_and_by_no_other(lost: bool) -> None:
+    hidden = Hidden(stiffness={"braces 2": 0.05}, onset=20) if lost else Hidden()
+    model, record = measured(0, hidden, modes=7, structure=mast)
+    readings = ModalReadings.of(model, record)
+    assert readings.names_in_doubt == lost
+    effect = {"kind": "member_stiffness", "group": "braces 2", "factor": 0.05, "onset": 72_000.0}
+    looks = ModalTrials(model, readings).looks({"lost": read_effect(effect, "lost")})
+    assert sorted(looks) == list(range(20, 40))
+    again = ModalReadings.of(model, record, looks)
+    assert (again.cost < readings.cost) == lost
+    if lost:
+        assert again.unnamed + again.doubtful < readings.unnamed + readings.doubtful
 
 
 @pytest.mark.thorough

@@ -83,7 +83,7 @@ def _diagnosed(
 ) -> Findings:
     readings = ModalReadings.of(model, record)
     found = _searched(model, readings, criteria, progress)
-    if found.fit.hypotheses and (readings.doubtful or readings.unsure or readings.unnamed):
+    if found.fit.hypotheses and readings.names_in_doubt:
         # A structure that has changed may have modes that are hardly those expected.
         looks = found.fit.likelihood.trials.looks(effects_at(found.fit.hypotheses, found.fit.z))
         again = ModalReadings.of(model, record, looks)

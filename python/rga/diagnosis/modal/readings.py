@@ -147,6 +147,11 @@ class ModalReadings:
             cost=named.cost,
         )
 
+    @property
+    def names_in_doubt(self) -> bool:
+        """Whether modes of some windows may be others, or many were not known by their names."""
+        return bool(self.doubtful or self.unsure or self.unnamed > FEW * len(self.time))
+
     def label(self, moment: float) -> str | float:
         """A time on the scale of onsets [s] as the record writes it."""
         return self.record.time_label(moment - self.record.origin)
