@@ -256,10 +256,7 @@ class ModalTrials:
         at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
         frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
         log_f = np.log(frequencies)
-        coupled = couplings(log_f)
-        unlike = np.array(
-            [unlike_computed(look.shape, coupled, at_points[:, look.at]) for look in looks]
-        )
+        unlike = unlike_computed(looks, couplings(log_f), at_points)
         pairing = paired(looks, frequencies, at_points, unlike=unlike)
         if (pairing.computed < 0).any():
             lacking = self.readings.modes[int(np.argmin(pairing.computed))]

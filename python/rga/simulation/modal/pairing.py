@@ -173,27 +173,47 @@ def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float
     return float(white @ white) * 0.5 * SHAPE_ERROR
 
 
-def unlike_computed(shape: FloatArray, coupled: FloatArray, shapes: FloatArray) -> FloatArray:
-    """The same of a measured shape and all computed ones, float[computed].
+def unlike_computed(
+    expected: Sequence[Expected], coupled: FloatArray, shapes: FloatArray
+) -> FloatArray:
+    """The same of all expected modes and all computed ones, float[expected, computed].
 
     Args:
-        shape: measured, float[points].
+        expected: modes whose shapes were measured; of those that have none it is NaN.
         coupled: how much of each computed mode may be in the others, as `couplings` has it.
-        shapes: of the computed modes for the same modal mass, float[computed, points].
+        shapes: of the computed modes for the same modal mass at all points,
+            float[computed, points].
     """
-    whole = float(shape @ shape)
-    if whole == 0.0:
-        return np.full(len(shapes), np.nan)
-    # All by products of shapes, as `apart` and `without_parts` for each of them.
-    products, along = shapes @ shapes.T, shapes @ shape
+    table = np.full((len(expected), len(shapes)), np.nan)
+    where: dict[bytes, list[int]] = {}
+    for number, one in enumerate(expected):
+        if one.shape.any():
+            where.setdefault(one.at.tobytes(), []).append(number)
+    for numbers in where.values():
+        measured = np.array([expected[number].shape for number in numbers])
+        table[numbers] = _unlike(measured, coupled, shapes[:, expected[numbers[0]].at])
+    return table
+
+
+def _unlike(measured: FloatArray, coupled: FloatArray, shapes: FloatArray) -> FloatArray:
+    """Of shapes that were measured at the same points float[k, points], float[k, computed]."""
+    # All by products of shapes, as `apart` and `without_parts` for each of them, with the modes
+    # that are coupled to each alone.
+    products, along = shapes @ shapes.T, shapes @ measured.T
     squares = np.maximum(np.diag(products), 1e-300)
-    sizes = coupled * np.sqrt(whole / squares)[:, None]
-    with_off = sizes * (along - products * (along / squares)[:, None])
-    own = products[:, :, None] * products[:, None, :] / squares[:, None, None]
-    within = sizes[:, :, None] * sizes[:, None, :] * (products - own)
-    within += 0.5 * SHAPE_ERROR * whole * np.eye(len(shapes))
-    explained = (with_off * np.linalg.solve(within, with_off[:, :, None])[:, :, 0]).sum(1)
-    return np.asarray(1.0 - (along**2 / squares + explained) / whole)
+    most = int((coupled > 0.0).sum(1).max(initial=0))
+    near = np.argsort(-coupled, axis=1, kind="stable")[:, :most]
+    sizes = np.take_along_axis(coupled, near, 1) / np.sqrt(squares)[:, None]
+    crossed = np.take_along_axis(products, near, 1)
+    off = along[near] - crossed[:, :, None] * (along / squares[:, None])[:, None, :]
+    off *= sizes[:, :, None]
+    own = crossed[:, :, None] * crossed[:, None, :] / squares[:, None, None]
+    within = products[near[:, :, None], near[:, None, :]] - own
+    within *= sizes[:, :, None] * sizes[:, None, :]
+    within += 0.5 * SHAPE_ERROR * np.eye(most)
+    explained = (off * np.linalg.solve(within, off)).sum(1)
+    explained += along**2 / squares[:, None]
+    return np.asarray(1.0 - explained.T / (measured**2).sum(1)[:, None])
 
 
 def apart(shape: FloatArray, own: FloatArray, parts: FloatArray) -> tuple[FloatArray, FloatArray]:

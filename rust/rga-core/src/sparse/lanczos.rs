@@ -21,7 +21,7 @@ const ALL_ROUNDING: f64 = 0.1;
 /// Residual of an eigenvector, in the norm of K, over its eigenvalue, which errs by the square of
 /// that: of a space that starts with nothing, and of one that starts with vectors near by.
 const CONVERGED: f64 = 1e-11;
-const CONVERGED_NEAR: f64 = 1e-8;
+const CONVERGED_NEAR: f64 = 1e-6;
 /// Steps between two looks at what has converged, of a space that starts with few vectors.
 const LOOK: usize = 3;
 /// Sums that a product is parted into, side by side in registers. Bits depend on it.

@@ -109,12 +109,23 @@ def test_modes_that_lie_apart_are_not_turned() -> None:
 
 def test_mixtures_of_all_computed_modes_at_once_are_those_of_one_after_the_other() -> None:
     draw = np.random.default_rng(5)
-    shapes, shape = draw.normal(size=(6, POINTS)), draw.normal(size=POINTS)
+    shapes, measured = draw.normal(size=(6, POINTS)), draw.normal(size=(2, POINTS))
     log_f = np.log([4.0, 4.001, 4.03, 4.2, 9.0, 9.1])
-    one_by_one = [
-        unlike_mixed(shape, own, parts_of_others(log_f, shapes, number))
-        for number, own in enumerate(shapes)
+    some = np.arange(POINTS - 2)
+    looks = [
+        *(Expected(4.0, 0.1, np.arange(POINTS), shape) for shape in measured),
+        Expected(9.0, 0.1, some, measured[0, some]),
+        Expected(9.0, 0.1, some[:0], measured[0, :0]),
     ]
-    at_once = unlike_computed(shape, couplings(log_f), shapes)
-    np.testing.assert_allclose(at_once, one_by_one, rtol=1e-12)
-    assert at_once[0] < 1.0 - (shape @ shapes[0]) ** 2 / (shape @ shape) / (shapes[0] @ shapes[0])
+    at_once = unlike_computed(looks, couplings(log_f), shapes)
+    for look, found in zip(looks[:3], at_once, strict=False):
+        at = shapes[:, look.at]
+        one_by_one = [
+            unlike_mixed(look.shape, own, parts_of_others(log_f, at, number))
+            for number, own in enumerate(at)
+        ]
+        np.testing.assert_allclose(found, one_by_one, rtol=1e-12)
+    assert np.isnan(at_once[3]).all()
+    shape = measured[0]
+    alone = 1.0 - (shape @ shapes[0]) ** 2 / (shape @ shape) / (shapes[0] @ shapes[0])
+    assert at_once[0, 0] < alone

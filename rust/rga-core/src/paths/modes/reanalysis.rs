@@ -3,21 +3,26 @@
 //! What does not depend on stiffness and mass is done once: in which order unknowns are eliminated.
 //! The space in which modes are sought starts with what K^-1 M makes of the known ones, so that few
 //! steps lead to the modes of a structure near by (block inverse iteration with all its iterates
-//! kept; Parlett, The Symmetric Eigenvalue Problem, 1980, chapters 13 and 14). They are as exact,
-//! and counted, as those of a structure by itself.
+//! kept; Parlett, The Symmetric Eigenvalue Problem, 1980, chapters 13 and 14). They are
+//! counted as those of a structure by itself, and their frequencies as exact as its own; shapes are
+//! to a millionth, in the norm of the stiffness.
 
 use super::motion::Motion;
 use super::{BEYOND, Modes, lowest};
 use crate::error::Result;
 use crate::input::{Masses, Structure};
-use crate::sparse::lanczos::Lanczos;
+use crate::sparse::lanczos::{Lanczos, RitzPairs};
 use crate::validate::masses::check_masses;
 use crate::validate::structure::check_structure;
+
+/// Modes whose eigenvalues differ by this part or less are found together: between those of another
+/// structure there may be no gap for the count.
+const TOGETHER: f64 = 1e-3;
 
 /// A structure that swings, with its modes.
 pub struct ModalReanalysis {
     motion: Motion,
-    vectors: Vec<Vec<f64>>,
+    known: RitzPairs,
 }
 
 impl ModalReanalysis {
@@ -29,7 +34,7 @@ impl ModalReanalysis {
         let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
         Ok(Self {
             motion,
-            vectors: found.vectors,
+            known: found,
         })
     }
 
@@ -42,7 +47,16 @@ impl ModalReanalysis {
             let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
             return Ok(motion.modes(&found, count));
         };
-        let found = lowest(&motion, count, 0, Lanczos::near(&motion, &self.vectors)?)?;
+        let space = Lanczos::near(&motion, &self.known.vectors)?;
+        let found = lowest(&motion, count, self.beyond(count), space)?;
         Ok(motion.modes(&found, count))
+    }
+
+    /// Modes beyond so many that lie where the last of these does.
+    fn beyond(&self, count: usize) -> usize {
+        let pairs = self.known.values.windows(2).skip(count.saturating_sub(1));
+        pairs
+            .take_while(|pair| pair[0] <= pair[1] * (1.0 + TOGETHER))
+            .count()
     }
 }
