@@ -69,6 +69,7 @@ def test_the_polished_network_leaves_hardly_more_than_the_noise() -> None:
     assert error_of(polished, data) < 0.3
 
 
+@pytest.mark.thorough
 def test_nothing_but_load_tests_is_labelled(
     full: CalibrationData, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -27,6 +27,7 @@ def played(model: Model, record: Record, settings: Settings, place: Path) -> His
         return running.history()
 
 
+@pytest.mark.thorough
 def test_a_stream_in_pieces_ends_as_its_record_does(
     small_stream: Callable[..., Path], tmp_path: Path
 ) -> None:

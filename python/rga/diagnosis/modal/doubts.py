@@ -14,12 +14,15 @@ from rga.diagnosis.modal.readings import (
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.model import Model
-from rga.quantities import counted
+from rga.quantities import counted, duration, short
+from rga.records.modal.record import ModalRecord
 
 #: modes without which nothing is said to be right
 FEW_MODES = 3
 #: standard deviations from which on a drift is no chance
 SURE = 5.0
+#: length of a window beyond which hardly any is meant [s]
+LONG_WINDOW = 86_400.0
 #: change of a frequency that no weather makes
 BEYOND_WEATHER = 0.1
 
@@ -128,4 +131,31 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
         warnings.append(f"columns that are not used: {', '.join(readings.record.left_out)}")
     if readings.unnamed:
         warnings.append(f"{readings.unnamed} entries of the record are none of the modes expected")
+    return warnings + odd_entries(model, readings.record)
+
+
+def odd_entries(model: Model, record: ModalRecord) -> list[str]:
+    """In words: what a modal record can hardly mean as it is written."""
+    warnings = []
+    entries = np.column_stack([record.time, record.frequency])
+    twice = len(entries) - len(np.unique(entries, axis=0))
+    if twice:
+        entry = "entry stands" if twice == 1 else "entries stand"
+        warnings.append(f"{twice} {entry} in the record more than once: each counts once")
+    longest = float(np.nanmax(record.duration, initial=0.0))
+    if longest > LONG_WINDOW:
+        length, unit = duration(longest)
+        warnings.append(
+            f"windows last up to {short(length)} {unit}: what changes within one shows as its mean "
+            "alone; durations are in seconds"
+        )
+    for name, column in record.contexts.items():
+        low, high = model.context[name].range
+        far = np.isfinite(column) & ((column < low) | (column > high))
+        windows = len(np.unique(record.time[far]))
+        if windows:
+            warnings.append(
+                f"{name} lies outside its range {low:g}..{high:g} in {counted(windows, 'window')}: "
+                "check its unit and its zero"
+            )
     return warnings

@@ -1,0 +1,32 @@
+"""What is odd in a modal record is told, and of a sound one nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from independent.modal_bridge import Hidden, measured
+from rga.diagnosis.modal.doubts import odd_entries
+from rga.model.schema import ContextVariable
+
+
+def test_of_a_sound_record_nothing_is_said() -> None:
+    model, record = measured(1, Hidden(), windows=5)
+    assert odd_entries(model, replace(record, duration=np.full(len(record), 600.0))) == []
+
+
+def test_what_can_hardly_be_meant_is_told() -> None:
+    model, record = measured(1, Hidden(), windows=5)
+    air = ContextVariable(unit="degC", range=(-20.0, 40.0))
+    model = model.model_copy(update={"context": {"air": air}})
+    again = record.entries(np.ones(len(record), dtype=bool))
+    time, frequency = again.time.copy(), again.frequency.copy()
+    time[1], frequency[1] = time[0], frequency[0]
+    kelvin = np.where(record.windows < 2, 290.0, 10.0)
+    odd = replace(
+        again, time=time, frequency=frequency, duration=np.full(len(time), 1e9),
+        contexts={"air": kelvin},
+    )  # fmt: skip
+    twice, long, far = odd_entries(model, odd)
+    assert twice == "1 entry stands in the record more than once: each counts once"
+    assert "days: what changes within one shows as its mean alone" in long
+    assert far == "air lies outside its range -20..40 in 2 windows: check its unit and its zero"
