@@ -76,7 +76,8 @@ def decaying_modes(motion: FloatArray, step: float, highest: float) -> list[Deca
         highest: frequency that is looked for [Hz].
 
     Raises:
-        InputError: samples are too few, too many or too far apart; or a reading is missing.
+        InputError: samples are too few, too many or too far apart; a reading is missing, a sensor
+            does not move, or the frequency is not above zero.
 
     >>> time = np.arange(0, 10, 0.02)
     >>> swing = np.exp(-0.2 * time) * np.cos(2 * np.pi * 1.5 * time)
@@ -110,6 +111,10 @@ def _thinned(motion: FloatArray, step: float, highest: float) -> tuple[FloatArra
         row = int(np.argmax(~np.isfinite(motion).all(1)))
         raise InputError(
             "a reading is missing", f"sample {row} of the decay", "give a stretch without gaps"
+        )
+    if not highest > 0:
+        raise InputError(
+            f"{highest:g} Hz is no frequency", "highest", "give the highest to look for"
         )
     if PER_PERIOD * highest * step > 2.0:
         raise InputError(

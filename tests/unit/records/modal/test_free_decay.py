@@ -74,3 +74,9 @@ def test_what_shows_no_decay_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=words):
         decaying_modes(motion, step, 10.0)
+
+
+@pytest.mark.parametrize("highest", [0.0, -1.0, float("nan")])
+def test_no_frequency_is_refused(highest: float) -> None:
+    with pytest.raises(InputError, match="is no frequency"):
+        decaying_modes(np.arange(500.0)[:, None], 0.02, highest)
