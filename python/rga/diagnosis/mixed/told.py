@@ -15,6 +15,7 @@ from rga.diagnosis.modal.account import by_sensor, mode_gap, mode_groups, mode_r
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
 from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.noise.covariance import Reduced
@@ -217,9 +218,8 @@ class ToldModes:
             several += [(evidence.beside(one), "tried") for one in fits]
         for ranked in self.mixed.rivals:
             for one, behind in ranked:
-                close = behind < criteria.rivals.log_odds
-                words = "cannot be separated from what is named" if close else "rejected"
-                several.append((one, f"{words} ({-behind:+.1f} log-odds)"))
+                whole = self.mixed.fit.log_evidence - one.log_evidence
+                several.append((one, rival_words(behind, whole, criteria)))
         found = [self._explanation(*one) for one in several if np.isfinite(one[0].log_evidence)]
         return sorted(found, key=lambda one: -one.log_odds)
 

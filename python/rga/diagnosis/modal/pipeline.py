@@ -15,6 +15,7 @@ from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warning
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.search import ModalFound, search
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
@@ -231,9 +232,8 @@ def _explanations(
         several.append((found.fit, "what is named"))
     for ranked in found.rivals:
         for one, behind in ranked:
-            close = behind < criteria.rivals.log_odds
-            words = "cannot be separated from what is named" if close else "rejected"
-            several.append((one, f"{words} ({-behind:+.1f} log-odds)"))
+            whole = found.fit.log_evidence - one.log_evidence
+            several.append((one, rival_words(behind, whole, criteria)))
     explanations = []
     for one, remark in several:
         if one.prediction is None:

@@ -11,6 +11,7 @@ from rga.drawing.figure_style import AFTER, BEFORE, FAINT, MEASURED, grid, inlin
 from rga.drawing.scene.scene import Scene, make_scene
 from rga.drawing.views import View, axonometry
 from rga.findings.modal_arrays import ModalArrays, ModeReading
+from rga.quantities import percent
 
 #: modes that are drawn, and the largest motion over the size of the structure
 MOST, LARGEST = 10, 0.09
@@ -81,7 +82,7 @@ def _mode(
     off = np.expm1(np.nanmean(mode.log_f - (mode.before, mode.after)[column]))
     alike = mode.mac[column]
     words = (
-        f"{mode.name} {ends_of[column]}: computed mode {mode.number[column]}, {100 * off:+.1f} %"
+        f"{mode.name} {ends_of[column]}: computed mode {mode.number[column]}, {percent(100 * off)}"
     )
     words += f", MAC {alike:.2f}" if np.isfinite(alike) else ", by frequency only"
     axes.set_title(words, fontsize=8.5, loc="left", pad=2)
