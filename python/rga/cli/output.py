@@ -1,8 +1,8 @@
 """Results on the disk: whole or not at all."""
 
 import json
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -82,13 +82,11 @@ def write_json(content: Any, target: str) -> None:
 @contextmanager
 def _scratch(path: Path) -> Iterator[Path]:
     """A temporary directory beside `path`, removed at the end."""
-    parent = path.absolute().parent
+    # Its name is known before it is there: a signal may come as soon as it is.
+    scratch = path.absolute().parent / f".rga-{secrets.token_hex(8)}"
     try:
-        parent.mkdir(parents=True, exist_ok=True)
-        scratch = Path(tempfile.mkdtemp(prefix=".rga-", dir=parent))
-    except OSError as error:
-        raise cannot_write(error, path) from None
-    try:
+        scratch.parent.mkdir(parents=True, exist_ok=True)
+        scratch.mkdir(mode=0o700)
         yield scratch
     except CannotWrite as error:
         raise CannotWrite(error.what, str(path)) from error

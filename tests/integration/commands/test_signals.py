@@ -8,9 +8,11 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from rga.cli.output import whole_file
 from rga.cli.signals import Stopped, stopping
 
 ENDED = {signal.SIGINT: (130, "interrupted"), signal.SIGTERM: (143, "terminated")}
@@ -81,6 +83,23 @@ def test_a_diagnosis_leaves_nothing(
     said, error = process.communicate(timeout=20)
     code, word = ENDED[number]
     assert (process.returncode, said, error) == (code, "", f"{word}\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_signal_that_comes_with_the_first_directory_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make = Path.mkdir
+
+    def stopped(path: Path, *rest: Any, **more: Any) -> None:
+        make(path, *rest, **more)
+        if path.parent == tmp_path:
+            raise Stopped(signal.SIGTERM)
+
+    with monkeypatch.context() as patched, pytest.raises(Stopped):
+        patched.setattr(Path, "mkdir", stopped)
+        with whole_file(tmp_path / "out.json"):
+            pytest.fail("nothing is written")
     assert list(tmp_path.iterdir()) == []
 
 
