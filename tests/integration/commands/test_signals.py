@@ -96,10 +96,9 @@ def test_a_signal_that_comes_with_the_first_directory_leaves_nothing(
         if path.parent == tmp_path:
             raise Stopped(signal.SIGTERM)
 
-    with monkeypatch.context() as patched, pytest.raises(Stopped):
-        patched.setattr(Path, "mkdir", stopped)
-        with whole_file(tmp_path / "out.json"):
-            pytest.fail("nothing is written")
+    monkeypatch.setattr(Path, "mkdir", stopped)
+    with pytest.raises(Stopped), whole_file(tmp_path / "out.json"):
+        pytest.fail("nothing is written")
     assert list(tmp_path.iterdir()) == []
 
 
