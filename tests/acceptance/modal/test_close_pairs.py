@@ -58,7 +58,9 @@ def test_the_bay_that_has_lost_its_braces_is_named(bay: str) -> None:
     assert cause.effect["group"] == bay
     low, high = cause.effect["factor"]["ci90"]
     assert low < 0.05 < high
-    assert cause.onset == pytest.approx(20 * 3600.0)
+    # Of the first window names may be in doubt: it is left out then, and told.
+    left_out = any("left out" in warning for warning in findings.warnings)
+    assert cause.onset in ([72_000.0, 75_600.0] if left_out else [72_000.0])
 
 
 @pytest.mark.thorough
