@@ -75,6 +75,13 @@ def test_what_cannot_be_read_is_told(
     assert len(done.err.splitlines()) == 1
 
 
+def test_a_file_of_times_alone_is_told(rga: Callable[..., Outcome], logged: Path) -> None:
+    pl.read_csv(logged).select("time").write_csv(logged)
+    done = rga("free-decay", logged, "--highest", 5)
+    assert done.code == 2
+    assert "nothing but the time" in done.err
+
+
 def test_a_gap_in_time_is_told(rga: Callable[..., Outcome], logged: Path) -> None:
     table = pl.read_csv(logged)
     pl.concat([table[:300], table[350:]]).write_csv(logged)

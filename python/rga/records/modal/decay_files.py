@@ -85,6 +85,10 @@ def decay_of(
     known = [
         name for name in table.frame.columns if name not in (*clock.columns, *table.bookkeeping)
     ]
+    if not known:
+        raise InputError(
+            "there is nothing but the time", str(path), "give a column for each sensor"
+        )
     chosen = [_named(one, known, Path(path)) for one in columns or known]
     points = tuple(point for _, point in chosen)
     if len(set(points)) < len(points):
