@@ -108,8 +108,7 @@ pub(crate) fn modal_energies<'py>(
 /// A structure whose modes are known: those of structures near it are found in few steps.
 ///
 /// They are counted as by `modes`, their frequencies as exact, and their shapes to a millionth in
-/// the norm of the stiffness. A structure whose unknowns are coupled
-/// otherwise is solved by itself.
+/// the norm of the stiffness. A structure whose unknowns are coupled otherwise is solved by itself.
 ///
 /// Parameters
 /// ----------

@@ -91,9 +91,11 @@ class TwinReading:
             if view is None:
                 return None
             if self._twin is None or view.steps != self._steps:
-                # All that is read of it is of one step, whatever is added at this moment.
-                self._steps = view.steps
-                self._twin, self._now = Twin(view.at_step(self._steps), self.place), None
+                # All that is read of it is of one step, whatever is added at this moment; where it
+                # cannot be read, what was read before is not taken for it.
+                steps = view.steps
+                self._twin, self._now = Twin(view.at_step(steps), self.place), None
+                self._steps = steps
             return self._twin
 
     def now(self) -> TwinNow | None:

@@ -12,7 +12,7 @@ from itertools import count
 import numpy as np
 from scipy import signal, stats
 
-from rga.arrays import BoolArray, FloatArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.errors import InputError
 from rga.records.modal.read import as_real
 
@@ -25,6 +25,8 @@ LEAST = 60
 #: orders of the realisations, and beginnings within the first quarter of the decay
 ORDERS = range(4, 41, 2)
 BEGINNINGS = 5
+#: part of the largest singular value that is rounding
+ROUNDING = 1e-12
 #: periods that a decay has of a mode, and most damping that a structure has
 PERIODS, MOST_DAMPING = 4, 0.1
 #: of the same mode: frequencies apart, and MAC
@@ -88,20 +90,15 @@ def decaying_modes(motion: FloatArray, step: float, highest: float) -> list[Deca
     (1.5, [1.0, -0.5], 0.021)
     """
     motion, step = _thinned(motion, step, highest)
-    sizes = motion.std(0)
-    if not (sizes > 0).all():
-        raise InputError(
-            "a sensor does not move", f"sensor {int(np.argmin(sizes))}", "leave it out"
-        )
     # Sensors of all units count alike.
+    sizes = motion.std(0)
     motion = motion / sizes
     poles = _Poles.of(motion, step, highest)
     groups = list(poles.alike())
+    frequencies = [poles.frequency(own) for own in groups]
     courses = [poles.course(own, len(motion), step) for own in groups]
-    found = [
-        poles.mode(own, sizes, out)
-        for own, out in zip(groups, _over_noise(motion, step, courses), strict=True)
-    ]
+    stand_out = _over_noise(motion, step, frequencies, courses)
+    found = [poles.mode(own, sizes, out) for own, out in zip(groups, stand_out, strict=True)]
     return sorted(found, key=lambda one: one.frequency)
 
 
@@ -132,6 +129,13 @@ def _thinned(motion: FloatArray, step: float, highest: float) -> tuple[FloatArra
             f"give {seconds[0]:.3g} to {seconds[1]:.3g} s of the decay, or another highest "
             "frequency",
         )
+    spread = np.ptp(motion, axis=0)
+    if not (spread > 0).all():
+        raise InputError(
+            "a sensor does not move", f"sensor {int(np.argmin(spread))}", "leave it out"
+        )
+    # A filter takes an offset for a step at both ends.
+    motion = signal.detrend(motion, axis=0)
     if of_each > 1:
         motion = signal.decimate(motion, of_each, n=20 * of_each, ftype="fir", axis=0)
     return np.asarray(motion - motion.mean(0)), step * of_each
@@ -148,14 +152,14 @@ class _Poles:
         runs: number of realisations.
     """
 
-    run: FloatArray
+    run: IntArray
     rate: np.ndarray
     shape: np.ndarray
     runs: int
 
     @classmethod
     def of(cls, motion: FloatArray, step: float, highest: float) -> "_Poles":
-        number, runs, rates, shapes = count(), list[FloatArray](), [], []
+        number, runs, rates, shapes = count(), list[IntArray](), [], []
         for begin in range(BEGINNINGS):
             part = motion[begin * len(motion) // (4 * BEGINNINGS) :]
             for poles, motions in _realisations(part):
@@ -188,6 +192,10 @@ class _Poles:
             yield same[most] & left
             left &= ~same[most]
 
+    def frequency(self, own: BoolArray) -> float:
+        """Of such a mode [Hz]."""
+        return float(np.median(np.abs(self.rate[own]))) / (2 * np.pi)
+
     def course(self, own: BoolArray, samples: int, step: float) -> FloatArray:
         """How such a mode moves, cosine and sine, float[samples, 2]."""
         rate = np.median(self.rate[own].real) + 1j * np.median(self.rate[own].imag)
@@ -197,7 +205,7 @@ class _Poles:
     def mode(self, own: BoolArray, sizes: FloatArray, over_noise: float) -> DecayingMode:
         """The mode of poles that are alike, of sensors of which each has its size."""
         frequency = np.abs(self.rate[own]) / (2 * np.pi)
-        middle = float(np.median(frequency))
+        middle = self.frequency(own)
         shapes = self.shape[own]
         turned = shapes * np.exp(-1j * np.angle(shapes @ shapes[0].conj()))[:, None]
         (shape,), (realness,) = as_real(turned.mean(0)[None])
@@ -220,17 +228,19 @@ def _realisations(motion: FloatArray) -> Iterator[tuple[np.ndarray, np.ndarray]]
     columns = samples - rows
     hankel = np.concatenate([motion[row : row + columns].T for row in range(rows + 1)])
     left, sizes, right = np.linalg.svd(hankel[:-sensors], full_matrices=False)
-    for order in ORDERS:
-        if order > len(sizes) or sizes[order - 1] <= 1e-12 * sizes[0]:
-            return
+    # Without noise there is nothing beyond a few orders.
+    rank = int((sizes > ROUNDING * sizes[0]).sum())
+    for order in [one for one in ORDERS if one <= rank] or [rank]:
         root = np.sqrt(sizes[:order])
         system = (left[:, :order] / root).T @ hankel[sensors:] @ right[:order].T / root
         poles, vectors = np.linalg.eig(system)
         yield poles, (left[:sensors, :order] * root) @ vectors
 
 
-def _over_noise(motion: FloatArray, step: float, courses: list[FloatArray]) -> list[float]:
-    """How far each course stands out of what is left about its frequency: an F test."""
+def _over_noise(
+    motion: FloatArray, step: float, frequencies: list[float], courses: list[FloatArray]
+) -> list[float]:
+    """How far each course stands out of what is left about its frequency [Hz]: an F test."""
     if not courses:
         return []
     samples, sensors = motion.shape
@@ -238,12 +248,12 @@ def _over_noise(motion: FloatArray, step: float, courses: list[FloatArray]) -> l
     power = np.abs(np.fft.rfft(left, axis=0)) ** 2 / samples
     cycles = np.fft.rfftfreq(samples, step)
     found = []
-    for number, course in enumerate(courses):
+    for number, frequency in enumerate(frequencies):
         without = _left(motion, courses[:number] + courses[number + 1 :])
         gained = (without**2).sum(0) - (left**2).sum(0)
-        turns = np.abs(np.fft.rfft(course[:, 0]))
-        about = np.abs(cycles / cycles[np.argmax(turns)] - 1.0) < ABOUT
-        size = float((gained / power[about].mean(0)).sum()) / (2 * sensors)
+        about = np.abs(cycles / frequency - 1.0) < ABOUT
+        noise = np.maximum(power[about].mean(0), ROUNDING**2)
+        size = float((gained / noise).sum()) / (2 * sensors)
         # Any of as many frequencies could have stood out.
         chance = CHANCE / samples
         found.append(size / float(stats.f.isf(chance, 2 * sensors, 2 * sensors * about.sum())))

@@ -50,6 +50,23 @@ def test_sensors_of_other_units_change_nothing_but_the_units() -> None:
         np.testing.assert_allclose(other.shape, along * expected, rtol=1e-6, atol=1e-12)
 
 
+def test_offsets_and_a_trend_change_nothing() -> None:
+    motion = swinging(np.random.default_rng(0))
+    plain = decaying_modes(motion, STEP, 10.0)
+    trend = np.outer(np.arange(len(motion)), [1e-3, 0.0, -1e-2])
+    moved = motion + np.array([30.0, -50.0, 0.0])
+    for one, other in zip(plain, decaying_modes(moved + trend, STEP, 10.0), strict=True):
+        assert one.frequency == pytest.approx(other.frequency, rel=1e-6)
+
+
+def test_a_decay_without_noise_is_found() -> None:
+    time = np.arange(1000) * STEP
+    swing = np.exp(-0.5 * time) * np.cos(2 * np.pi * 3.0 * time)
+    found = decaying_modes(np.outer(swing, [1.0, 2.0]), STEP, 10.0)
+    clear = [one for one in found if not one.in_doubt]
+    assert min(abs(one.frequency - 3.0) for one in clear) < 0.02
+
+
 @pytest.mark.parametrize("kind", ["white", "walk"])
 def test_of_noise_alone_nothing_is_clear(kind: str) -> None:
     rng = np.random.default_rng(7)
