@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rga
+from rga.errors import InputError
 from rga.operation.configuration import read_configuration
 from rga.operation.reading import twin_reading
 from rga.operation.reading.overview import BLOCK
@@ -15,6 +16,7 @@ from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.service import Service
 from rga.records import Record
 from rga.twin import Twin
+from rga.twin.repository import RunView
 from served.bridges import packets_of
 
 START = datetime(2026, 11, 23, tzinfo=UTC)
@@ -81,6 +83,20 @@ def test_where_nothing_is_nothing_is_shown(
         found = reading.series(begin, end, 100)
         assert found is not None
         assert len(found.measured) == 0
+
+
+def test_a_step_that_cannot_be_read_is_not_answered_by_the_one_before(
+    reading: TwinReading, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def damaged(*_: object) -> None:
+        raise InputError("damaged", "repository", "restore it")
+
+    assert reading.now() is not None
+    monkeypatch.setattr(twin_reading, "Twin", damaged)
+    monkeypatch.setattr(RunView, "steps", property(lambda view: 10**6))
+    for _ in range(2):
+        with pytest.raises(InputError, match="damaged"):
+            reading.now()
 
 
 def test_now_is_the_last_row(reading: TwinReading) -> None:
