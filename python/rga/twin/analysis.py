@@ -171,20 +171,20 @@ class RealityGapAnalysis:
         usual = calibration.usual_gap(standing.calibrated, recent[1] - recent[0], standing.share)
         gap = calibration.rows.gap
         before, expected = gap(*recent), gap(*recent, standing.share)
-        known = calibration.learned
-        self._refine(recent)
-        after, left = gap(*recent), gap(*recent, standing.share)
+        known, learned_from = calibration.learned, recent
+        if standing.alarm is not None and expected <= usual:
+            # An alarm chooses rows that look odd, be it by chance: those after it tell what is so.
+            learned_from = (max(first, standing.alarm + 1), standing.row)
+        self._refine(learned_from)
         changes = calibration.changes(known) if calibration.corrects else None
-        if standing.alarm is not None and expected <= usual and changes == ():
-            # An alarm chose rows that look odd by chance: learned from, they lead astray.
-            calibration.return_to(known, *recent)
-            after, left = before, expected
+        if learned_from != recent:
+            calibration.return_to(known if changes == () else calibration.learned, *recent)
+        after, left = gap(*recent), gap(*recent, standing.share)
         rows, novel = f"rows {recent[0]} to {recent[1] - 1}", calibration.novel(*recent)
         inferred = bool(calibration.latent)
         doubted, words = judged(rows, expected, left, usual, changes, novel, inferred=inferred)
-        interval = self._policy.next_interval(
-            standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
-        )
+        allowed = max(usual - 1.0, LEAST_ALLOWED)
+        interval = self._policy.next_interval(standing.interval, expected - left, allowed)
         if interval != standing.interval:
             words += f"; the interval is now {interval} rows"
         standing.interval = interval
@@ -297,7 +297,7 @@ class RealityGapAnalysis:
 
     def _refine(self, recent: tuple[int, int]) -> None:
         """Learn from the latest rows; where that makes the gap larger, return to what was."""
-        if (calibration := self._calibration).learned is None:
+        if (calibration := self._calibration).learned is None or recent[0] == recent[1]:
             return
         version = self._exchange.twin.state.version
         stored = self._archive.run.simulated(version=version, origin="novel").contexts
