@@ -6,7 +6,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
 import typer
 
@@ -15,6 +15,9 @@ from rga.cli.output import whole_directory, write_json
 from rga.cli.progress import shown_progress
 from rga.errors import InputError
 from rga_bench.experiment import Execution, Experiment
+
+if TYPE_CHECKING:
+    from rga_bench.synthetic import Case
 
 Result = TypeVar("Result")
 Build = Callable[..., Experiment[Any]]
@@ -72,6 +75,7 @@ Splits = Annotated[
     typer.Option("--splits", metavar="N", parser=whole(1), help="Random splits of the full gap."),
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
+FewDraws = Annotated[bool, typer.Option("--quick", help="Four draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 FewStreams = Annotated[bool, typer.Option("--quick", help="One stream of each sort.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
@@ -99,6 +103,13 @@ Smallest = Annotated[bool, typer.Option("--quick", help="200 rows of 12 sensors 
 Short = Annotated[bool, typer.Option("--quick", help="One run of 3 000 rows only.")]
 Once = Annotated[bool, typer.Option("--quick", help="Few packets, and one kill of each sort.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
+
+
+class Drawn(Protocol):
+    """A draw of a blind challenge."""
+
+    def case(self) -> "Case":
+        """The case itself."""
 
 
 def _shared(name: str, kind: object, default: object) -> Parameter:
@@ -204,18 +215,36 @@ def diagnosis(
 ) -> Experiment[Any]:
     """The blind challenge: effects hidden by seed, each beside its null twin."""
     if case is not None:
-        _write_case(case, output)
+        from rga_bench.diagnosis.field_design import draw_of
+
+        _write_case(case, draw_of(case), output)
         raise typer.Exit
     from rga_bench.diagnosis.experiment import DiagnosisExperiment
 
     return DiagnosisExperiment.of(seed, quick=quick, count=draws, generator=generator)
 
 
-def _write_case(name: str, output: Path | None) -> None:
-    """Draw a case of the blind challenge, and write its files to a directory."""
-    from rga_bench.diagnosis.field_design import draw_of
+@_experiment(WORKERS, DASK, MINUTES, KEPT)
+def modal_diagnosis(
+    draws: Draws = 400,
+    quick: FewDraws = False,
+    seed: Seed = 1,
+    output: KeptIn = None,
+    case: CaseName = None,
+) -> Experiment[Any]:
+    """The blind challenge with modes, alone and beside gauges; each draw beside its null twin."""
+    if case is not None:
+        from rga_bench.modal_diagnosis.design import ModalDraw
 
-    drawn = draw_of(name)
+        _write_case(case, ModalDraw.parse(case), output)
+        raise typer.Exit
+    from rga_bench.modal_diagnosis.experiment import ModalDiagnosisExperiment
+
+    return ModalDiagnosisExperiment.of(seed, quick=quick, count=draws)
+
+
+def _write_case(name: str, drawn: Drawn, output: Path | None) -> None:
+    """Draw a case of a blind challenge, and write its files to a directory."""
     if output is None:
         raise InputError("there is no place for the case", "--case", "give a directory with -o")
     with whole_directory(output) as draft:

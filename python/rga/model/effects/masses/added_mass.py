@@ -11,6 +11,8 @@ from rga.model.structure import Structure
 
 USUAL = Normal(0.0, 100.0)
 USUAL_ON_NODE = Normal(0.0, 1000.0)
+#: of what the model states there already, where that is more
+SHARE = 0.25
 
 
 class AddedMass(Effect):
@@ -30,7 +32,10 @@ class AddedMass(Effect):
         check="works on the structure about the onset, and the weather",
         test="level the span against earlier levels: what moves also weighs",
     )
-    usual = f"per_length {USUAL} kg/m, mass {USUAL_ON_NODE} kg: judgements"
+    usual = (
+        f"per_length {USUAL} kg/m, mass {USUAL_ON_NODE} kg, or {SHARE:.0%} of what the model has "
+        "there where that is more: judgements"
+    )
     structural = True
     on_modes = True
     group: Annotated[str | list[str] | None, Place("group")] = None
@@ -58,7 +63,16 @@ class AddedMass(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"per_length": USUAL} if "group" in place else {"mass": USUAL_ON_NODE}
+        key, parameter, usual = "node", "mass", USUAL_ON_NODE
+        if "group" in place:
+            key, parameter, usual = "group", "per_length", USUAL
+        there = set(listed(place[key]))
+        stated = [
+            getattr(one, parameter) or 0.0
+            for one in model.masses.values()
+            if getattr(one, key) in there
+        ]
+        return {parameter: Normal(0.0, max([usual.spread, *(SHARE * one for one in stated)]))}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         masses = structure.masses
