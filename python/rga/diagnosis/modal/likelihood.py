@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.modal.readings import ModalReadings, context_courses
+from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.simulation.modal.pairing import SHAPE_ERROR, apart, freedom_of_parts, without_parts
 
@@ -21,6 +21,8 @@ CHANGE_ERROR = 0.1
 #: what a context may do to a mode beside what the model says, over its range, as a share of the
 #: frequency: a deck of asphalt stiffens by more when it freezes, steel by less
 WEATHER = 0.03
+#: bends that its line may have, anywhere over the range
+BENDS = 9
 #: error that a model makes of a frequency when it is right in everything that one can name, as a
 #: share of it: Georgia Tech's footbridge and others leave 1 to 2 %
 MODEL_ERROR = 0.01
@@ -62,6 +64,29 @@ def _whitened(columns: FloatArray, weight: FloatArray, memory: FloatArray) -> Fl
     return np.asarray(white)
 
 
+def bent_lines(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
+    """Lines that bend anywhere over the range of each context, float[k, windows].
+
+    A line and bends, each of which is about as likely to be the one: where asphalt stiffens or a
+    bearing freezes stands in no model, and a bend in another place leaves a course that a change
+    with an onset is taken for.
+
+    >>> bent_lines({"air": np.array([0.0, 10.0])}, 2)[0]
+    array([-0.5,  0.5])
+    """
+    courses = []
+    for column in contexts.values():
+        seen = np.isfinite(column)
+        if not seen.any() or np.ptp(column[seen]) == 0:
+            continue
+        filled = np.where(seen, column, column[seen].mean())
+        scaled = (filled - column[seen].min()) / np.ptp(column[seen])
+        bends = np.arange(1, BENDS + 1)[:, None] / (BENDS + 1)
+        bent = np.abs(scaled - bends) / np.sqrt(BENDS)
+        courses += [scaled - scaled.mean(), *(bent - bent.mean(axis=1, keepdims=True))]
+    return np.array(courses).reshape(len(courses), windows)
+
+
 class ModalLikelihood:
     """The likelihood of measured modes.
 
@@ -82,7 +107,7 @@ class ModalLikelihood:
         self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
         # The error of the model is the same in all windows; what a context does beside is not.
         windows = len(self.readings.time)
-        weather = WEATHER * context_courses(self.readings.contexts, windows)
+        weather = WEATHER * bent_lines(self.readings.contexts, windows)
         columns = np.concatenate([level * np.ones((1, windows)), weather])
         noise = zip(self.readings.scatter, self.readings.memory, strict=True)
         self._nothing = trials.predict({})
