@@ -107,8 +107,8 @@ def judge_modes(draw: ModalDraw) -> ModalOutcome:
                 size = modal_size(model, modal, load_modal_record(modes, model), truth)
                 if size is not None:
                     hidden |= {"d_perp": size.d_perp, "nearest": size.nearest}
-    causes = [one for one in findings.causes if not _permitted(case, one)]
-    true = [one for one in causes if _has(truths, one)]
+    true = [one for one in findings.causes if _has(truths, one)]
+    causes = [one for one in findings.causes if one in true or not _permitted(case, one)]
     paired, mispaired = _pairs(case, findings.modes)
     return ModalOutcome(
         id=draw.id,
