@@ -16,7 +16,8 @@ from rga.errors import InputError
 from rga.model import load_model, read_model
 from rga.records import load_record
 from rga.simulation import Simulator
-from rga_bench.diagnosis.design import Draw, draws
+from rga_bench.diagnosis.blind_draw import draws
+from rga_bench.diagnosis.design import Draw
 from rga_bench.diagnosis.field_design import (
     FIELD_CIRCUMSTANCES,
     FIELD_NULLS,

@@ -5,13 +5,12 @@ contexts and noise with nothing hidden. Kinds go round in turn, and so do circum
 numbers have no common divisor, so every kind meets every circumstance.
 """
 
-import re
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
-from rga.errors import InputError
+from rga_bench.diagnosis.blind_draw import BlindDraw
 from rga_bench.synthetic import BRIDGES, KINDS, Case, Conditions, draw_case
 from rga_bench.synthetic.hidden.catalogue import fits
 
@@ -67,35 +66,14 @@ NULLS = tuple(dict.fromkeys(one.null for one in CIRCUMSTANCES))
 
 
 @dataclass(frozen=True)
-class Draw:
+class Draw(BlindDraw):
     """One case of the challenge.
 
     >>> Draw.parse("7-single-12-null")
     Draw(seed=7, stratum='single', number=12, null=True)
     """
 
-    seed: int
-    stratum: str
-    number: int
-    null: bool = False
-
-    @property
-    def id(self) -> str:
-        """Its name, from which it can be drawn again."""
-        return f"{self.seed}-{self.stratum}-{self.number}" + ("-null" if self.null else "")
-
-    @classmethod
-    def parse(cls, name: str) -> Self:
-        """The draw of a name (InputError)."""
-        found = re.fullmatch(rf"(\d+)-({'|'.join(STRATA)})-(\d+)(-null)?", name)
-        if found is None:
-            raise InputError(
-                f"{name!r} names no case of the challenge",
-                "--case",
-                f"write SEED-STRATUM-NUMBER, with -null for the twin; strata: {', '.join(STRATA)}",
-            )
-        seed, stratum, number, null = found.groups()
-        return cls(int(seed), stratum, int(number), null is not None)
+    strata = STRATA
 
     @property
     def circumstance(self) -> Circumstance:
@@ -125,7 +103,7 @@ class Draw:
             return (OUTSIDE[self.number % len(OUTSIDE)],)
         if self.stratum == "single":
             return (SINGLES[self.number % len(SINGLES)],)
-        rng = self._random("kinds")
+        rng = self.random("kinds")
         while True:
             first, second = (SINGLES[k] for k in rng.choice(len(SINGLES), 2, replace=False))
             if not {first, second} <= set(AT_MOST_ONE) and _bridges((first, second)):
@@ -151,7 +129,7 @@ class Draw:
     @property
     def _drawn(self) -> tuple[int, str, tuple[float, float]]:
         """Seed, bridge and bounds of d' that are drawn."""
-        rng = self._random("case")
+        rng = self.random("case")
         seed = int(rng.integers(2**31))
         bridges, aims = _bridges(self.kinds), AIMS[self.stratum]
         bridge = bridges[int(rng.integers(len(bridges)))]
@@ -162,24 +140,6 @@ class Draw:
         if "joint_rigidity" in self.kinds:
             return "truss" if self.null else "frame"
         return "frame" if self.circumstance.stiff else "truss"
-
-    def _random(self, purpose: str) -> np.random.Generator:
-        stratum = list(STRATA).index(self.stratum)
-        return np.random.default_rng([self.seed, stratum, self.number, *purpose.encode()])
-
-
-def draws(seed: int, count: int, kind: type[Draw] = Draw) -> list[Draw]:
-    """The draws of a challenge of about `count` hidden effects, each before its null twin.
-
-    `kind` is that of the draws: each generator has its own. The strata take turns by their shares,
-    so that every beginning of the list is balanced.
-    """
-    order = []
-    for stratum, share in STRATA.items():
-        many = max(1, round(share * count))
-        order += [((k + 0.5) / many, kind(seed, stratum, k)) for k in range(many)]
-    hidden = [draw for _, draw in sorted(order, key=lambda one: (one[0], one[1].stratum))]
-    return [one for draw in hidden for one in (draw, replace(draw, null=True))]
 
 
 def _bridges(kinds: tuple[str, ...]) -> list[str]:

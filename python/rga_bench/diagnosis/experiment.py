@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from rga.errors import InputError
-from rga_bench.diagnosis.design import QUICK, Draw, draws
+from rga_bench.diagnosis.blind_draw import draws
+from rga_bench.diagnosis.design import QUICK, Draw
 from rga_bench.diagnosis.field_design import GENERATORS
 from rga_bench.diagnosis.figures import figures
 from rga_bench.diagnosis.judge import DrawOutcome, judge
@@ -40,7 +41,7 @@ class DiagnosisExperiment(Experiment[Sequence[DrawOutcome]]):
             raise InputError(f"there is no generator {generator!r}", "--generator", remedy)
         return cls(seed, QUICK if quick else count, generator)
 
-    def draws(self) -> list[Draw]:
+    def draws(self) -> Sequence[Draw]:
         """The tasks, in the order in which they are begun."""
         return draws(self.seed, self.count, GENERATORS[self.generator])
 

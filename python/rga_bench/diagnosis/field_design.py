@@ -46,10 +46,7 @@ class FieldDraw(Draw):
     FieldDraw(seed=7, stratum='single', number=12, null=True)
     """
 
-    @property
-    def id(self) -> str:
-        """Its name, from which it can be drawn again."""
-        return PREFIX + super().id
+    prefix = PREFIX
 
     @property
     def recorded(self) -> FieldCircumstance:
@@ -74,7 +71,7 @@ class FieldDraw(Draw):
             return (outside[self.number % len(outside)],)
         if self.stratum == "single":
             return (inside[self.number % len(inside)],)
-        rng = self._random("kinds")
+        rng = self.random("kinds")
         while True:
             first, second = (inside[k] for k in rng.choice(len(inside), 2, replace=False))
             if _structures((first, second)):
@@ -84,11 +81,11 @@ class FieldDraw(Draw):
     def bridge(self) -> str:
         """The structure that it stands on."""
         several = _structures(self.kinds)
-        return several[int(self._random("structure").integers(len(several)))]
+        return several[int(self.random("structure").integers(len(several)))]
 
     def case(self) -> Case:
         """The case itself."""
-        rng = self._random("case")
+        rng = self.random("case")
         seed, aims = int(rng.integers(2**31)), AIMS[self.stratum]
         gaps, coarse = (float(x) for x in rng.random(2))
         recorded = self.recorded
@@ -109,7 +106,7 @@ GENERATORS: dict[str, type[Draw]] = {"bridges": Draw, "field": FieldDraw}
 def draw_of(name: str) -> Draw:
     """The draw of a name, of either generator (InputError)."""
     if name.startswith(PREFIX):
-        return FieldDraw.parse(name.removeprefix(PREFIX))
+        return FieldDraw.parse(name)
     return Draw.parse(name)
 
 

@@ -6,13 +6,10 @@ and so do campaigns; their numbers have no common divisor, so every kind meets e
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from dataclasses import dataclass
+from typing import NamedTuple
 
-import numpy as np
-
-from rga.errors import InputError
+from rga_bench.diagnosis.blind_draw import BlindDraw
 from rga_bench.field import STRUCTURES
 from rga_bench.swinging.campaign import Campaign
 from rga_bench.swinging.case import ModalCase, draw_modal, fits
@@ -45,35 +42,14 @@ BESIDE = CAMPAIGNS[:3]
 
 
 @dataclass(frozen=True)
-class ModalDraw:
+class ModalDraw(BlindDraw):
     """One case of the challenge.
 
     >>> ModalDraw.parse("7-mixed-12-null")
     ModalDraw(seed=7, stratum='mixed', number=12, null=True)
     """
 
-    seed: int
-    stratum: str
-    number: int
-    null: bool = False
-
-    @property
-    def id(self) -> str:
-        """Its name, from which it can be drawn again."""
-        return f"{self.seed}-{self.stratum}-{self.number}" + ("-null" if self.null else "")
-
-    @classmethod
-    def parse(cls, name: str) -> Self:
-        """The draw of a name (InputError)."""
-        found = re.fullmatch(rf"(\d+)-({'|'.join(STRATA)})-(\d+)(-null)?", name)
-        if found is None:
-            raise InputError(
-                f"{name!r} names no case of the challenge with modes",
-                "--case",
-                f"write SEED-STRATUM-NUMBER, with -null for the twin; strata: {', '.join(STRATA)}",
-            )
-        seed, stratum, number, null = found.groups()
-        return cls(int(seed), stratum, int(number), null is not None)
+    strata = STRATA
 
     @property
     def measured(self) -> NamedCampaign:
@@ -91,11 +67,11 @@ class ModalDraw:
     def structure(self) -> str:
         """The structure that it stands on."""
         several = [name for name in STRUCTURES if fits(self.kind, name)]
-        return several[int(self._random("structure").integers(len(several)))]
+        return several[int(self.random("structure").integers(len(several)))]
 
     def case(self) -> ModalCase:
         """The case itself."""
-        rng = self._random("case")
+        rng = self.random("case")
         return draw_modal(
             int(rng.integers(2**31)),
             structure=self.structure,
@@ -104,23 +80,3 @@ class ModalDraw:
             campaign=self.measured.campaign,
             beside=self.stratum == "mixed",
         )
-
-    def _random(self, purpose: str) -> np.random.Generator:
-        stratum = list(STRATA).index(self.stratum)
-        return np.random.default_rng([self.seed, stratum, self.number, *purpose.encode()])
-
-
-def modal_draws(seed: int, count: int) -> list[ModalDraw]:
-    """The draws of a challenge of about `count` hidden effects, each before its null twin.
-
-    The strata take turns by their shares, so that every beginning of the list is balanced.
-
-    >>> [one.id for one in modal_draws(7, 2)]
-    ['7-mixed-0', '7-mixed-0-null', '7-modal-0', '7-modal-0-null']
-    """
-    order = []
-    for stratum, share in STRATA.items():
-        many = max(1, round(share * count))
-        order += [((k + 0.5) / many, ModalDraw(seed, stratum, k)) for k in range(many)]
-    hidden = [draw for _, draw in sorted(order, key=lambda one: (one[0], one[1].stratum))]
-    return [one for draw in hidden for one in (draw, replace(draw, null=True))]

@@ -8,9 +8,10 @@ from typing import Any, Self
 import numpy as np
 
 from rga.errors import InputError
+from rga_bench.diagnosis.blind_draw import draws
 from rga_bench.experiment import Execution, Experiment
 from rga_bench.ledger import outcomes_of, task_versions
-from rga_bench.modal_diagnosis.design import QUICK, ModalDraw, modal_draws
+from rga_bench.modal_diagnosis.design import QUICK, ModalDraw
 from rga_bench.modal_diagnosis.judge import ModalOutcome, judge_modes
 from rga_bench.modal_diagnosis.tables import modal_figures, modal_tables
 from rga_bench.page import MarkdownPage
@@ -35,9 +36,9 @@ class ModalDiagnosisExperiment(Experiment[Sequence[ModalOutcome]]):
         """That of a command line."""
         return cls(seed, QUICK if quick else count)
 
-    def draws(self) -> list[ModalDraw]:
+    def draws(self) -> Sequence[ModalDraw]:
         """The tasks, in the order in which they are begun."""
-        return modal_draws(self.seed, self.count)
+        return draws(self.seed, self.count, ModalDraw)
 
     def measure(self, execution: Execution) -> list[ModalOutcome]:
         """Outcomes in the order of the draws.

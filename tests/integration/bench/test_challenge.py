@@ -11,7 +11,8 @@ import pytest
 from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records import Record, load_record
-from rga_bench.diagnosis.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
+from rga_bench.diagnosis.blind_draw import draws
+from rga_bench.diagnosis.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw
 from rga_bench.diagnosis.experiment import DiagnosisExperiment
 from rga_bench.diagnosis.figures import ChallengeFigure, figures, rate
 from rga_bench.diagnosis.hidden import Truth
@@ -70,7 +71,7 @@ def figure(outcomes: list[DrawOutcome], beginning: str) -> ChallengeFigure:
 
 
 def test_every_beginning_of_the_draws_is_balanced() -> None:
-    order = draws(3, 200)
+    order = draws(3, 200, Draw)
     assert len(order) == 400
     for count in (20, 60, 200):
         begun = order[: 2 * count]
@@ -81,11 +82,11 @@ def test_every_beginning_of_the_draws_is_balanced() -> None:
     # Kinds and circumstances go round in turn: without a common divisor, each meets each.
     assert gcd(len(SINGLES), len(CIRCUMSTANCES)) == 1
     assert {one.circumstance.null for one in order} == set(NULLS)
-    assert set(draws(3, 100)) < set(order)
+    assert set(draws(3, 100, Draw)) < set(order)
 
 
 def test_a_name_draws_its_case_again() -> None:
-    for one in draws(5, 20):
+    for one in draws(5, 20, Draw):
         assert Draw.parse(one.id) == one
     for wrong in ("5-single", "x-single-3", "5-double-3", "5-single-3-nil", ""):
         with pytest.raises(InputError, match="names no case"):
@@ -278,7 +279,7 @@ def test_an_interval_is_wilsons() -> None:
 
 
 def test_tables_and_plots_are_made_of_any_part(tmp_path: Path) -> None:
-    several = [outcome(one.id) for one in draws(1, 30)]
+    several = [outcome(one.id) for one in draws(1, 30, Draw)]
     for part in (several[:1], several[1:2], several):
         assert "found, d_perp 8 and more" in tables(part)
         for path in plot(part, tmp_path):

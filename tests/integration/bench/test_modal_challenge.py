@@ -11,10 +11,11 @@ from independent.dense_modes import dense_mode_shapes
 from rga.errors import InputError
 from rga.model import load_model, read_model
 from rga.records.modal.read import load_modal_record
+from rga_bench.diagnosis.blind_draw import draws
 from rga_bench.experiment import Execution
 from rga_bench.field import STRUCTURES
 from rga_bench.field.world import FieldWorld
-from rga_bench.modal_diagnosis.design import BESIDE, CAMPAIGNS, ModalDraw, modal_draws
+from rga_bench.modal_diagnosis.design import BESIDE, CAMPAIGNS, ModalDraw
 from rga_bench.modal_diagnosis.experiment import ModalDiagnosisExperiment
 from rga_bench.modal_diagnosis.judge import ModalOutcome, judge_modes
 from rga_bench.modal_diagnosis.tables import modal_figures, modal_tables
@@ -73,12 +74,12 @@ def test_weather_and_a_wrong_clock_move_all_frequencies() -> None:
 
 
 def test_draws_are_known_by_their_names_and_every_kind_meets_every_campaign() -> None:
-    drawn = modal_draws(7, 30)
+    drawn = draws(7, 30, ModalDraw)
     assert all(ModalDraw.parse(one.id) == one for one in drawn)
     assert gcd(len(OF_MODES), len(CAMPAIGNS)) == 1
     assert gcd(len(OF_MODES) + len(OF_GAUGES), len(BESIDE)) == 1
     assert sum(one.null for one in drawn) == len(drawn) // 2 == 30
-    with pytest.raises(InputError, match="names no case of the challenge with modes"):
+    with pytest.raises(InputError, match="names no case of the challenge"):
         ModalDraw.parse("7-single-1")
 
 
@@ -86,7 +87,7 @@ def test_draws_are_known_by_their_names_and_every_kind_meets_every_campaign() ->
 def outcome() -> ModalOutcome:
     """Of a weak member of a plane frame."""
     drawn = next(
-        one for one in modal_draws(3, 200)
+        one for one in draws(3, 200, ModalDraw)
         if one.structure == "portal" and one.kind == "member_stiffness" and one.stratum == "modal"
     )  # fmt: skip
     return judge_modes(drawn)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.readings import ModalReadings, scaled_contexts
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.simulation.modal.pairing import SHAPE_ERROR, apart, freedom_of_parts, without_parts
 
@@ -74,16 +74,11 @@ def bent_lines(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
     >>> bent_lines({"air": np.array([0.0, 10.0])}, 2)[0]
     array([-0.5,  0.5])
     """
+    bends = np.arange(1, BENDS + 1)[:, None] / (BENDS + 1)
     courses = []
-    for column in contexts.values():
-        seen = np.isfinite(column)
-        if not seen.any() or np.ptp(column[seen]) == 0:
-            continue
-        filled = np.where(seen, column, column[seen].mean())
-        scaled = (filled - column[seen].min()) / np.ptp(column[seen])
-        bends = np.arange(1, BENDS + 1)[:, None] / (BENDS + 1)
-        bent = np.abs(scaled - bends) / np.sqrt(BENDS)
-        courses += [scaled - scaled.mean(), *(bent - bent.mean(axis=1, keepdims=True))]
+    for course in scaled_contexts(contexts):
+        bent = np.abs(course - bends) / np.sqrt(BENDS)
+        courses += [course - course.mean(), *(bent - bent.mean(axis=1, keepdims=True))]
     return np.array(courses).reshape(len(courses), windows)
 
 

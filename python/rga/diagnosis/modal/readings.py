@@ -1,6 +1,6 @@
 """Modes that were measured: frequencies window by window, their noise, and shapes."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -268,14 +268,20 @@ def _noise(
 def context_courses(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
     """What may follow contexts, a line with a bend in it, over their range: float[k, windows]."""
     courses = []
+    for course in scaled_contexts(contexts):
+        scaled = course - course.mean()
+        courses += [scaled, scaled**2 - (scaled**2).mean(), np.abs(scaled) - np.abs(scaled).mean()]
+    return np.array(courses).reshape(len(courses), windows)
+
+
+def scaled_contexts(contexts: dict[str, FloatArray]) -> Iterator[FloatArray]:
+    """Contexts that vary, from zero to one, float[windows] each; the mean where one is missing."""
     for column in contexts.values():
         seen = np.isfinite(column)
         if not seen.any() or np.ptp(column[seen]) == 0:
             continue
         filled = np.where(seen, column, column[seen].mean())
-        scaled = (filled - filled.mean()) / np.ptp(filled)
-        courses += [scaled, scaled**2 - (scaled**2).mean(), np.abs(scaled) - np.abs(scaled).mean()]
-    return np.array(courses).reshape(len(courses), windows)
+        yield (filled - column[seen].min()) / np.ptp(column[seen])
 
 
 def _variance(steps: FloatArray) -> float:
