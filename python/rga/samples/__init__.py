@@ -1,4 +1,4 @@
-"""Samples that are shipped: a structure, a logger's file of it, and a cause that is hidden.
+"""Samples that are shipped: a structure, what was measured of it, and a cause that is hidden.
 
 They are made by `python -m rga_bench.samples`, whose physics are not those of the simulator.
 """
@@ -9,11 +9,11 @@ from zipfile import ZipFile
 
 from rga.errors import InputError
 
-SAMPLE_NAMES = ("footbridge", "roof", "portal", "mast")
+SAMPLE_NAMES = ("footbridge", "roof", "portal", "mast", "crane")
 
 
 def sample_files(name: str) -> dict[str, bytes]:
-    """The files of a sample by name: model, logger's file, mapping, what it is, and the answer.
+    """The files of a sample by name: model, record or modes, what it is, and the answer.
 
     Raises:
         InputError: there is no such sample.

@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from rga_bench.field.case import draw_field
+from rga_bench.swinging import Campaign, ModalCase, draw_modal
 from rga_bench.synthetic.case import Case, draw_case
 
 ROWS = 240
@@ -50,6 +51,31 @@ def _footbridge(seed: int) -> Case:
         aims=(20.0, 24.0),
     )
 
+
+def _crane(seed: int) -> ModalCase:
+    return draw_modal(
+        seed,
+        structure="jib",
+        kind="member_stiffness",
+        welded=False,
+        campaign=Campaign(windows=48, weather=True),
+        beside=False,
+    )
+
+
+#: how a structure differs from its model beside what is hidden: of readings, and of modes
+BESIDE = """\
+Beside it the structure differs from its model as every real one does: the stiffness of
+its members scatters by some per cent, gauges have gains and noise with a memory, and
+the sensors of temperature and loads have errors of their own. The readings were made by
+a frame solver that has nothing in common with the one that diagnoses them.
+"""
+BESIDE_MODES = """\
+Beside it the structure differs from its model as every real one does: stiffness and mass
+of its members scatter by some per cent, frequencies fall in warm air and rise by more when
+it freezes, and one mode in ten was not found in a window. The modes are those of a solver
+that has nothing in common with the one that diagnoses them.
+"""
 
 SAMPLES = {
     "footbridge": SampleDesign(
@@ -96,6 +122,17 @@ SAMPLES = {
         "Container am Mastfuß",
         datetime(2024, 2, 5),
     ),
+    "crane": SampleDesign(
+        3,
+        _crane,
+        "Jib crane of a boatyard",
+        "A pillar with a boom of three chords that hangs from its head by two ties: natural\n"
+        "frequencies and mode shapes of twelve days, with the air's temperature beside them.",
+        "Boatyard",
+        "Werftkran Nord",
+        "Kranfuß",
+        datetime(2024, 1, 22),
+    ),
 }
 
 
@@ -113,10 +150,7 @@ def answer(case: Case, start: datetime) -> str:
         f"  kind = {truth['kind']!r}, "
         + ", ".join(f"{key} = {value!r}" for key, value in truth["place"].items())
         + f", {truth['parameter']} = {truth['value']:.3g}\n\n"
-        "Beside it the structure differs from its model as every real one does: the stiffness of\n"
-        "its members scatters by some per cent, gauges have gains and noise with a memory, and\n"
-        "the sensors of temperature and loads have errors of their own. The readings were made by\n"
-        "a frame solver that has nothing in common with the one that diagnoses them.\n"
+        + (BESIDE_MODES if isinstance(case, ModalCase) else BESIDE)
     )
 
 

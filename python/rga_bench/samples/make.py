@@ -2,6 +2,7 @@
 
 import io
 import json
+from datetime import datetime, timedelta
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
@@ -16,6 +17,7 @@ from rga_bench.samples.logger_file import (
     TIME_FORMAT,
     logger_file,
 )
+from rga_bench.swinging import ModalCase
 
 #: of the steel that all are built of, S355 [Pa]
 YIELD_STRENGTH = 3.55e8
@@ -59,6 +61,24 @@ Something about the structure is not as the model has it. To find out what:
 The report is findings/report.html. The structure and its readings are made up.
 """
 
+README_MODES = """\
+{title}
+
+{what}
+
+  model.json    the structure as it was designed, with its masses
+  modes.csv     natural frequencies and mode shapes, window by window, without names
+  answer.txt    what is wrong with the structure: read it last
+
+Something about the structure is not as the model has it. To find out what:
+
+  rga check model.json
+  rga modes model.json modes.csv
+  rga diagnose model.json --modal modes.csv -o findings
+
+The report is findings/report.html. The structure and its modes are made up.
+"""
+
 
 def sample_files(design: SampleDesign) -> dict[str, bytes]:
     """The files of a sample by name."""
@@ -71,15 +91,38 @@ def sample_files(design: SampleDesign) -> dict[str, bytes]:
         name: {**material, "yield_strength": YIELD_STRENGTH}
         for name, material in case.model["materials"].items()
     }
+    model_file = (json.dumps(model, indent=1) + "\n").encode()
+    told = answer(case, design.start).encode()
+    if isinstance(case, ModalCase):
+        return {
+            "README.txt": README_MODES.format(title=design.title, what=design.what).encode(),
+            "answer.txt": told,
+            "model.json": model_file,
+            "modes.csv": dated(case.modal, design.start).encode(),
+        }
     log = logger_file(case, design.site, design.station, design.start, design.seed)
     mapping = MAPPING.format(header_line=log.header_line, units_line=log.header_line + 1)
     return {
         "README.txt": README.format(title=design.title, what=design.what).encode(),
-        "answer.txt": answer(case, design.start).encode(),
+        "answer.txt": told,
         "import.toml": mapping.encode(),
         "logger.csv": log.content,
-        "model.json": (json.dumps(model, indent=1) + "\n").encode(),
+        "model.json": model_file,
     }
+
+
+def dated(table: str, start: datetime) -> str:
+    """A table whose first column is time [s], with dates in its place.
+
+    >>> dated("time,f\\n3600,1.5\\n", datetime(2024, 1, 22))
+    'time,f\\n2024-01-22T01:00:00,1.5\\n'
+    """
+    head, *rows = table.splitlines()
+    lines = [head]
+    for row in rows:
+        time, rest = row.split(",", 1)
+        lines.append(f"{(start + timedelta(seconds=float(time))).isoformat()},{rest}")
+    return "\n".join(lines) + "\n"
 
 
 def archive(files: dict[str, bytes]) -> bytes:

@@ -1,10 +1,13 @@
 """What a model weighs, as a check tells it."""
 
+import json
+
 import pytest
 
 from rga import ModelBuilder
 from rga.checking import check
-from rga.model import Model
+from rga.model import Model, read_model
+from rga.samples import sample_files
 
 
 def portal(density: float = 7850.0, light: bool = False, box: float | None = None) -> Model:
@@ -52,3 +55,10 @@ def test_nothing_that_weighs() -> None:
 @pytest.mark.parametrize(("box", "mistaken"), [(0.25, True), (250.0, False), (2.5e6, True)])
 def test_masses_in_another_unit_than_kilograms(box: float, mistaken: bool) -> None:
     assert any("masses beside the members" in one for one in told(portal(box=box))) == mistaken
+
+
+def test_a_structure_that_is_known_by_its_modes_needs_no_other_sensor() -> None:
+    crane = read_model(json.loads(sample_files("crane")["model.json"]), "crane")
+    for model, missing in ((crane, False), (portal(), True)):
+        notes = [str(one) for one in check(model).findings]
+        assert any("it has no sensor" in note for note in notes) is missing

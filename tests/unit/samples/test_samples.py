@@ -9,9 +9,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from rga.diagnosis import diagnose
+from rga.diagnosis import diagnose, diagnose_modes
 from rga.errors import InputError
 from rga.model import Model, load_model
 from rga.records import Record, load_record
@@ -20,6 +21,8 @@ from rga_bench.samples.catalogue import SAMPLES
 from rga_bench.samples.make import sample_files as made_files
 
 FILES = ["README.txt", "answer.txt", "import.toml", "logger.csv", "model.json"]
+FILES_OF_MODES = ["README.txt", "answer.txt", "model.json", "modes.csv"]
+LOGGED = [name for name in SAMPLE_NAMES if name != "crane"]
 CAUSE = re.compile(r"kind = '(\w+)', (\w+) = '([^']+)'")
 
 
@@ -66,7 +69,7 @@ def read(tmp_path: Path) -> Callable[[str], tuple[Model, Record]]:
 
 
 class TestShippedFiles:
-    @pytest.mark.parametrize("name", SAMPLE_NAMES)
+    @pytest.mark.parametrize("name", LOGGED)
     def test_every_sample_is_read_as_its_mapping_says(
         self, name: str, read: Callable[[str], tuple[Model, Record]]
     ) -> None:
@@ -80,16 +83,34 @@ class TestShippedFiles:
     @pytest.mark.parametrize("name", SAMPLE_NAMES)
     def test_the_answer_stands_in_its_own_file_alone(self, name: str) -> None:
         files = sample_files(name)
-        assert list(files) == FILES
+        assert list(files) == (FILES if name in LOGGED else FILES_OF_MODES)
         found = CAUSE.search(files["answer.txt"].decode())
         assert found is not None
         kind, _, place = found.groups()
-        for told in (files["README.txt"].decode(), files["import.toml"].decode()):
+        for file in ("README.txt", "import.toml"):
+            told = files.get(file, b"").decode()
             assert kind not in told
             assert place not in told
-        assert "µm/m" in files["logger.csv"].decode("cp1252")
+
+    @pytest.mark.parametrize("name", LOGGED)
+    def test_a_logger_writes_in_its_own_encoding(self, name: str) -> None:
+        content = sample_files(name)["logger.csv"]
+        assert "µm/m" in content.decode("cp1252")
         with pytest.raises(UnicodeDecodeError):
-            files["logger.csv"].decode("utf-8")
+            content.decode("utf-8")
+
+    def test_modes_are_what_the_generator_makes(self) -> None:
+        shipped, made = sample_files("crane"), made_files(SAMPLES["crane"])
+        (one, *rows), (other, *again) = (
+            files["modes.csv"].decode().splitlines() for files in (shipped, made)
+        )
+        assert one == other
+        for row, cells in zip(rows, again, strict=True):
+            (time, *values), (second, *others) = row.split(","), cells.split(",")
+            assert time == second
+            np.testing.assert_allclose(
+                np.array(values, dtype=float), np.array(others, dtype=float), atol=1e-6
+            )
 
     def test_they_are_what_the_generator_makes(self) -> None:
         """To the last digit that machines agree on: what is rounded may fall either way."""
@@ -110,12 +131,18 @@ class TestShippedFiles:
 
 
 class TestHiddenCauses:
-    @pytest.mark.parametrize("name", ["footbridge", "roof"])
+    @pytest.mark.parametrize("name", ["footbridge", "roof", "crane"])
     def test_a_diagnosis_names_what_is_hidden(
-        self, name: str, read: Callable[[str], tuple[Model, Record]]
+        self, name: str, read: Callable[[str], tuple[Model, Record]], tmp_path: Path
     ) -> None:
-        findings = diagnose(*read(name))
-        kind, part, place = CAUSE.findall(sample_files(name)["answer.txt"].decode())[0]
+        files = sample_files(name)
+        if name in LOGGED:
+            findings = diagnose(*read(name))
+        else:
+            for file in ("model.json", "modes.csv"):
+                (tmp_path / file).write_bytes(files[file])
+            findings = diagnose_modes(tmp_path / "model.json", tmp_path / "modes.csv")
+        kind, part, place = CAUSE.findall(files["answer.txt"].decode())[0]
         assert findings.verdict == "named"
         (cause,) = findings.causes
         assert (cause.effect["kind"], cause.effect[part]) == (kind, place)

@@ -15,6 +15,8 @@ def sensors(over: OverRanges) -> Iterator[Finding]:
     """Sensors that no context moves, or by less than their noise; contexts that move none."""
     model, shown = over.model, over.readings
     if not model.sensors:
+        if model.modal_sensors:
+            return
         yield Finding("note", f"model {model.name!r}", "it has no sensor", "add what is measured")
         return
     if shown.trouble is not None:

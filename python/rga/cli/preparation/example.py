@@ -16,15 +16,16 @@ class SampleName(StrEnum):
     roof = "roof"
     portal = "portal"
     mast = "mast"
+    crane = "crane"
 
 
 def example(
-    name: Annotated[SampleName, typer.Argument(metavar="footbridge|roof|portal|mast")],
+    name: Annotated[SampleName, typer.Argument(metavar="footbridge|roof|portal|mast|crane")],
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="New or empty directory to write it to.")
     ],
 ) -> None:
-    """Write a sample: a model, a logger's file of it, how to read that, and a hidden cause."""
+    """Write a sample: a model, what was measured (of the crane its modes), and a hidden cause."""
     from rga.cli.output import whole_directory
     from rga.samples import sample_files
 
