@@ -49,16 +49,60 @@ def test_a_stiffness_follows_the_temperature_by_hand() -> None:
     }
     context = {"air": {"unit": "degC", "range": [-20, 40]}}
     air = np.array([-10.0, 5.0, 10.0, 13.0, 14.0, 30.0, 31.0])
-    for more, above in (({}, air - 10), ({"kink": 12.0}, np.maximum(air - 12, 0))):
+    frost = np.where(air > 12, -0.02 * (air - 12), -0.05 * (air - 12))
+    for more, change in (
+        ({}, -0.02 * (air - 10)),
+        ({"of": "both"}, -0.02 * (air - 10)),
+        ({"of": "EI"}, 0.0 * air),
+        ({"kink": 12.0, "below": -0.05}, frost),
+        ({"kink": 12.0}, -0.02 * np.maximum(air - 12, 0)),
+    ):
         own = {"kind": "stiffness_temperature", "group": "g", "rate": -0.02, **more}
         effects = {"pull": PULL, "warmth": warmth, "own": own}
         simulator = Simulator(read_model(hanging_bar(context=context, effects=effects), "test"))
         shown = simulator.predict({"air": air})[:, 0]
-        expected = LOAD * LENGTH / (MODULUS * AREA * (1 - 0.02 * above))
+        expected = LOAD * LENGTH / (MODULUS * AREA * (1 + change))
         np.testing.assert_allclose(shown, expected, rtol=1e-12)
-        assert simulator.plan({"air": air}).path == "C2"
+        assert simulator.plan({"air": air}).path == ("C1" if "EI" in more.values() else "C2")
     with pytest.raises(InputError, match="leaves no stiffness"):
         simulator.predict({"air": 70.0})
+
+
+@pytest.mark.parametrize(("of", "bends", "stretches"), [("EA", 0, 1), ("EI", 1, 0), ("both", 1, 1)])
+def test_what_follows_the_temperature_of_a_cantilever(of: str, bends: int, stretches: int) -> None:
+    """Its tip moves by F L^3 / 3 EI across, and by F L / EA along."""
+    content = hanging_bar(
+        sections={"bar": {"A": 2e-3, "Iy": 3e-6, "Iz": 3e-6, "J": 6e-6}},
+        nodes={"wall": [0, 0, 0], "tip": [2, 0, 0]},
+        members={
+            "arm": {
+                "nodes": ["wall", "tip"], "section": "bar", "material": "steel", "kind": "frame",
+                "groups": ["g"],
+            }
+        },
+        supports={"wall": {"node": "wall", "fixed": ["ux", "uz", "ry"]}},
+        context={"air": {"unit": "degC", "range": [-20, 40]}},
+        effects={
+            "pull": {"kind": "nodal_load", "forces": {"tip": [500.0, 0.0, -500.0]}},
+            "warmth": {
+                "kind": "temperature", "groups": {"g": 1.0},
+                "delta": {"context": "air", "minus": 10.0},
+            },
+            "soft": {
+                "kind": "stiffness_temperature", "group": "g", "rate": -0.002, "kink": 0.0,
+                "below": -0.01, "of": of,
+            },
+        },
+        sensors={
+            name: {"kind": "displacement", "node": "tip", "direction": way, "unit": "mm"}
+            for name, way in (("x", [1, 0, 0]), ("z", [0, 0, -1]))
+        },
+    )  # fmt: skip
+    shown = Simulator(read_model(content, "arm")).predict({"air": np.array([-10.0, 0.0, 20.0])})
+    change = np.array([0.1, 0.0, -0.04])
+    across = 5e5 * 2.0**3 / (3 * MODULUS * 3e-6 * (1 + bends * change))
+    along = 5e5 * 2.0 / (MODULUS * 2e-3 * (1 + stretches * change))
+    np.testing.assert_allclose(shown, np.column_stack([along, across]), rtol=1e-9)
 
 
 def test_two_bases_that_give_way_stand_one_behind_the_other() -> None:

@@ -58,6 +58,8 @@ CASES = [
     Case("bending_stiffness", "factor", FRAMES, 0.7, 1.0),
     Case("stiffness_temperature", "rate", GROUPS, -0.01),
     Case("stiffness_temperature", "rate", GROUPS, 0.01, more=(("kink", 15.0),)),
+    Case("stiffness_temperature", "rate", GROUPS, 0.01, more=(("of", "both"),)),
+    Case("stiffness_temperature", "below", GROUPS, -0.01, more=(("kink", 15.0),)),
     Case("added_axial_area", "area", GROUPS, 0.002),
     Case("floor_participation", "area", GROUPS, 0.003, more=(("connector_stiffness", 1e8),)),
     Case("joint_rigidity", "stiffness", GROUPS, 1e6),

@@ -18,16 +18,19 @@ USUAL = Normal(0.0, 0.003)
 
 
 class StiffnessTemperature(Effect):
-    """EA that follows the temperature: times 1 + rate * (T - kink) where T is above the kink.
+    """EA, EI or both that follow the temperature: times 1 + rate * (T - kink) above the kink.
 
-    T is the context that drives the model's `temperature` effects, of which there must be exactly
-    one, late where a `thermal_lag` makes the members late. EI stays as it is.
+    Below the kink the factor is 1 + below * (T - kink): asphalt and soil stiffen by much more when
+    they freeze than they soften when it is warm. T is the context that drives the model's
+    `temperature` effects, of which there must be exactly one, late where a `thermal_lag` makes the
+    members late.
 
     Attributes:
-        rate: [1/K] of EA; negative where a higher temperature softens.
-        kink: temperature from which on the rate holds, EA being as modelled below it [degC].
-            Left out, the rate holds at all temperatures, and EA is as modelled at the one
-            that warms nothing.
+        rate: [1/K] of the stiffness; negative where a higher temperature softens.
+        kink: temperature from which on the rate holds [degC]. Left out, the rate holds at all
+            temperatures, and the stiffness is as modelled at the one that warms nothing.
+        below: [1/K] of the stiffness below the kink, where it is as modelled unless this is given.
+        of: what follows; EI is that of members that bend, both have GJ with them.
     """
 
     kind: Literal["stiffness_temperature"] = "stiffness_temperature"
@@ -41,8 +44,12 @@ class StiffnessTemperature(Effect):
     group: Annotated[str | list[str], Place("group")]
     rate: Annotated[Value, Parameter("1/K", 0.0)] = 0.0
     kink: Annotated[Value | None, Parameter("degC", None)] = None
+    below: Annotated[Value, Parameter("1/K", 0.0)] = 0.0
+    of: Literal["EA", "EI", "both"] = "EA"
 
     def check(self, model: Model) -> None:
+        if self.kink is None and "below" in self.model_fields_set:
+            raise ValueError("below [1/K] holds below a kink: give kink [degC] too")
         driven = _driven_temperatures(model)
         contexts = sorted({delta.context for delta in driven})
         if len(contexts) != 1:
@@ -71,14 +78,21 @@ class StiffnessTemperature(Effect):
     ) -> None:
         # The factor itself is the parameter of the structure: stiffnesses are linear in it.
         warm = next(other for other in all_values.values() if "reference" in other)
-        above = warm["temperature"] - values.pop("kink", warm["reference"])
-        if self.kink is not None:
-            above = np.maximum(above, 0.0)
-        values["factor"] = 1.0 + values.pop("rate") * above
+        warmer = warm["temperature"] - values.pop("kink", warm["reference"])
+        rate, below = values.pop("rate"), values.pop("below")
+        slope = rate if self.kink is None else np.where(warmer > 0.0, rate, below)
+        values["factor"] = 1.0 + slope * warmer
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         positive(self, value["factor"], "reduce the rate, or give another kink")
-        structure.arrays["A"][structure.named(None, self.group)] *= value["factor"]
+        chosen, given = structure.named(None, self.group), structure.arrays
+        scaled = {
+            "EA": (given["A"],),
+            "EI": (given["Iy"], given["Iz"]),
+            "both": (given["E"], given["G"]),
+        }
+        for each in scaled[self.of]:
+            each[chosen] *= value["factor"]
 
 
 def _driven_temperatures(model: Model) -> list[Driven]:
