@@ -1,11 +1,14 @@
 """What is odd in a modal record is told, and of a sound one nothing."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import pytest
 
 from independent.modal_bridge import Hidden, measured
-from rga.diagnosis.modal.doubts import odd_entries
+from rga.diagnosis.modal.doubts import odd_entries, weather
 from rga.model.schema import ContextVariable
 
 
@@ -30,3 +33,17 @@ def test_what_can_hardly_be_meant_is_told() -> None:
     assert twice == "1 entry stands in the record more than once: each counts once"
     assert "days: what changes within one shows as its mean alone" in long
     assert far == "air lies outside its range -20..40 in 2 windows: check its unit and its zero"
+
+
+@pytest.mark.parametrize(
+    ("air", "doubted"),
+    [(None, True), ([np.nan] * 4, True), ([5.0] * 4, True), ([1.0, np.nan, 3.0, 2.0], False)],
+)
+def test_a_small_late_change_may_be_the_weather_unless_that_was_measured(
+    air: list[float] | None, doubted: bool
+) -> None:
+    readings: Any = SimpleNamespace(contexts={} if air is None else {"air": np.array(air)})
+    late: Any = SimpleNamespace(onset=3600.0)
+    after: Any = SimpleNamespace(log_f=np.array([[0.0], [0.0], [0.01], [0.01]]))
+    assert bool(weather(readings, [late], after)) is doubted
+    assert not weather(readings, [], after)
