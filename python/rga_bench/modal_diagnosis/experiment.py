@@ -24,17 +24,19 @@ class ModalDiagnosisExperiment(Experiment[Sequence[ModalOutcome]]):
     Attributes:
         seed: of all draws.
         count: hidden effects; each stands beside its null twin.
+        options: that make the same again.
     """
 
     name = "modal-diagnosis"
 
     seed: int
     count: int
+    options: str = ""
 
     @classmethod
     def of(cls, seed: int, *, quick: bool, count: int) -> Self:
         """That of a command line."""
-        return cls(seed, QUICK if quick else count)
+        return cls(seed, QUICK, "") if quick else cls(seed, count, f" --draws {count}")
 
     def draws(self) -> Sequence[ModalDraw]:
         """The tasks, in the order in which they are begun."""

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import rga
-from rga.model import Model
+from rga.model import Model, read_model
+from rga.model.effects.masses.added_mass import AddedMass
 from rga.model.schema import read_effect
 from rga.model.structure import build_structure
 
@@ -24,6 +25,23 @@ def mast() -> Model:
 
 def with_effect(**keys: Any) -> Model:
     return mast().extended({"more": read_effect(keys, "more")})
+
+
+@pytest.mark.parametrize(
+    ("given", "place", "spread"),
+    [
+        ({"node": "head", "mass": 300.0}, {"node": "head"}, 1000.0),
+        ({"node": "head", "mass": 40_000.0}, {"node": ["foot", "head"]}, 10_000.0),
+        ({"group": "shaft", "per_length": 20.0}, {"group": "shaft"}, 100.0),
+        ({"group": ["shaft"], "per_length": 2000.0}, {"group": "shaft"}, 500.0),
+    ],
+)
+def test_what_may_be_added_goes_with_what_stands_there(
+    given: dict[str, Any], place: dict[str, Any], spread: float
+) -> None:
+    content = mast().model_dump(mode="json", exclude_none=True) | {"masses": {"deck": given}}
+    (prior,) = AddedMass.priors(read_model(content, "mast"), place).values()
+    assert prior.value(1.0) == spread
 
 
 def weighed(model: Model) -> tuple[float, float]:

@@ -46,6 +46,8 @@ def test_a_stiffness_needs_one_temperature_to_follow() -> None:
     sun = {"kind": "temperature", "groups": {"webs": 1.0}}
     with pytest.raises(InputError, match="temperature and wind"):
         bridge(own=own, sun={**sun, "delta": {"context": "wind"}})
+    with pytest.raises(InputError, match="no member of the group bends"):
+        bridge(own={**own, "of": "EI"})
     with pytest.raises(InputError, match="holds below a kink: give kink"):
         bridge(own={**own, "below": -0.01})
     with pytest.raises(InputError, match="kink"):

@@ -68,9 +68,9 @@ class AddedMass(Effect):
             key, parameter, usual = "group", "per_length", USUAL
         there = set(listed(place[key]))
         stated = [
-            getattr(one, parameter) or 0.0
+            getattr(one, parameter)
             for one in model.masses.values()
-            if getattr(one, key) in there
+            if there & set(listed(getattr(one, key)))
         ]
         return {parameter: Normal(0.0, max([usual.spread, *(SHARE * one for one in stated)]))}
 

@@ -10,7 +10,7 @@ from rga.model.action import Action
 from rga.model.effect import Effect, Values
 from rga.model.effects.members.positive import positive
 from rga.model.effects.temperature.temperature import Temperature
-from rga.model.parameter import Driven, Normal, Parameter, Place, Prior, Value
+from rga.model.parameter import Driven, Normal, Parameter, Place, Prior, Value, listed
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
@@ -50,6 +50,9 @@ class StiffnessTemperature(Effect):
     def check(self, model: Model) -> None:
         if self.kink is None and "below" in self.model_fields_set:
             raise ValueError("below [1/K] holds below a kink: give kink [degC] too")
+        several = [model.members[name] for one in listed(self.group) for name in model.groups[one]]
+        if self.of == "EI" and all(member.kind != "frame" for member in several):
+            raise ValueError("no member of the group bends, so none has an EI: give of EA or both")
         driven = _driven_temperatures(model)
         contexts = sorted({delta.context for delta in driven})
         if len(contexts) != 1:
@@ -84,7 +87,7 @@ class StiffnessTemperature(Effect):
         values["factor"] = 1.0 + slope * warmer
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
-        positive(self, value["factor"], "reduce the rate, or give another kink")
+        positive(self, value["factor"], "reduce rate or below, or give another kink")
         chosen, given = structure.named(None, self.group), structure.arrays
         scaled = {
             "EA": (given["A"],),
