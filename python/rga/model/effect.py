@@ -276,7 +276,7 @@ class Effect(BaseModel):
             raw = getattr(self, name)
             if raw is None:
                 continue
-            value = resolve(raw, contexts, rows)
+            value = resolve(raw, contexts, rows, parameter.neutral)
             if weight is not None and parameter.neutral is not None:
                 value = blend(value, parameter.neutral, weight)
             resolved[name] = value
@@ -289,6 +289,10 @@ class Effect(BaseModel):
             values: parameters of the rows, others than which it is not asked for afterwards.
         """
         return self
+
+    def swinging(self) -> "Effect | None":
+        """What stands for it where the structure swings freely: itself if it changes that."""
+        return self if self.structural else None
 
     def check(self, model: "Model") -> None:
         """Refuse a model that the effect does not fit (ValueError), beyond missing places."""

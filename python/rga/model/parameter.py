@@ -39,10 +39,16 @@ AboveZero = Annotated[
 class Driven(BaseModel):
     """A parameter that follows a context variable: times * (context - minus).
 
+    With a kink it follows two lines that meet there, as what freezes does: at + below * (context -
+    kink) below the kink, and at + above * (context - kink) above it.
+
     Attributes:
         context: name of the variable.
         times, minus: as above.
         log10: the variable is a decimal logarithm: times * 10 ** (context - minus).
+        kink: value of the context at which the lines meet; None: there is one line.
+        below, above: slopes on either side of the kink, zero where they are left out.
+        at: the parameter at the kink; left out, the value at which its effect does nothing.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -50,15 +56,43 @@ class Driven(BaseModel):
     times: Number = 1.0
     minus: Number = 0.0
     log10: bool = False
+    kink: Number | None = None
+    below: Number = 0.0
+    above: Number = 0.0
+    at: Number | None = None
 
-    def follow(self, context: FloatArray) -> FloatArray:
+    def mistake(self, neutral: float | None) -> str:
+        """What cannot be meant, of a parameter with this neutral value; empty where all can."""
+        if self.kink is None and (self.below or self.above or self.at is not None):
+            return "below, above and at hold about a kink: give kink too"
+        if self.kink is None:
+            return ""
+        if self.times != 1.0 or self.minus or self.log10:
+            return "times, minus and log10 say nothing where there is a kink: give below and above"
+        if self.at is None and (neutral is None or not np.isfinite(neutral)):
+            return "give 'at', the parameter at the kink"
+        return ""
+
+    def follow(self, context: FloatArray, neutral: float | None = None) -> FloatArray:
         """The parameter at values of the context.
+
+        Args:
+            context: float[rows].
+            neutral: value at which the effect does nothing; None where there is none.
 
         >>> Driven(context="bearing", minus=-3.0, log10=True).follow(np.array([4.0]))
         array([10000000.])
+        >>> frost = Driven(context="air", kink=0.0, below=-0.01)
+        >>> frost.follow(np.array([-10.0, 0.0, 10.0]), neutral=1.0)
+        array([1.1, 1. , 1. ])
         """
-        moved = context - self.minus
-        return np.asarray(self.times * (10.0**moved if self.log10 else moved))
+        if self.kink is None:
+            moved = context - self.minus
+            return np.asarray(self.times * (10.0**moved if self.log10 else moved))
+        warmer = context - self.kink
+        at = neutral if self.at is None else self.at
+        assert at is not None  # where there is none, the model states one
+        return np.asarray(at + np.where(warmer > 0.0, self.above, self.below) * warmer)
 
 
 class Estimated(BaseModel):
@@ -216,19 +250,22 @@ def _likely(prior: Prior) -> str:
     return f"{low:g} to {high:g}"
 
 
-def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> FloatArray:
+def resolve(
+    value: Value, contexts: Mapping[str, FloatArray], rows: int, neutral: float | None = None
+) -> FloatArray:
     """Values of a parameter, one a row.
 
     Args:
         value: the parameter as it stands in the model.
         contexts: context variables, float[rows] each.
         rows: number of rows.
+        neutral: value at which the effect does nothing; None where there is none.
 
     Returns:
         float[rows], in the parameter's unit.
     """
     if isinstance(value, Driven):
-        return value.follow(contexts[value.context])
+        return value.follow(contexts[value.context], neutral)
     return np.full(rows, value.value if isinstance(value, Estimated) else value)
 
 

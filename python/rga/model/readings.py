@@ -1,6 +1,6 @@
 """What the sensors show: the simulated channels as effects on sensors change them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rga.arrays import FloatArray
 from rga.model.parameter import listed
@@ -15,12 +15,14 @@ class Readings:
         columns: sensor -> column.
         time: float[rows] [s].
         temperature_change: temperature change of each sensor's surroundings, float[rows] [K].
+        modes: columns of the sensors of each mode by the point that they read; "": its frequency.
     """
 
     values: FloatArray
     columns: dict[str, int]
     time: FloatArray
     temperature_change: FloatArray
+    modes: dict[str, dict[str, int]] = field(default_factory=dict)
 
     def at(self, sensors: str | list[str]) -> list[int]:
         """Columns of the sensors of a place."""

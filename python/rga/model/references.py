@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, LiteralString
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from rga.model.parameter import listed
+from rga.model.parameter import Driven, listed
 
 if TYPE_CHECKING:
     from rga.model.effect import Effect
@@ -176,6 +176,10 @@ def _misplaced(names: "_Names", effect: "Effect", where: tuple[str, ...]) -> Ite
     for context in sorted(effect.drivers()):
         if not names.has("context", context):
             yield where, f"there is no context {context!r} in the model"
+    for key, parameter in effect.parameters().items():
+        value = getattr(effect, key)
+        if isinstance(value, Driven) and (mistake := value.mistake(parameter.neutral)):
+            yield (*where, key), mistake
 
 
 def _without_length(

@@ -120,7 +120,7 @@ every = pytest.mark.parametrize("case", CASES, ids=name_of)
 
 def test_no_kind_is_left_out() -> None:
     loads = {"temperature", "nodal_load", "member_load", "axle_load"}
-    no_value = {"sensor_fault", "sensor_swap"}
+    no_value = {"sensor_fault", "sensor_swap", "mode_swap"}
     of_modes = {"added_mass", "mass_factor", "clock_rate"}
     assert {case.kind for case in CASES} | loads | no_value | of_modes == set(Effect.vocabulary)
 

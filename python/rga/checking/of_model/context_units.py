@@ -66,7 +66,8 @@ def context_units(over: OverRanges) -> Iterator[Finding]:
     for name, effect in model.effects.items():
         for key, driven in _driven(effect):
             variable = model.context[driven.context]
-            if driven.log10 or variable.unit not in KNOWN:
+            # Slopes about a kink carry the unit from the one to the other.
+            if driven.log10 or driven.kink is not None or variable.unit not in KNOWN:
                 continue
             unit = type(effect).unit(key, effect.place)
             if unit in WANTED:

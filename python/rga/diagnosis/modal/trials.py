@@ -10,6 +10,7 @@ from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
+from rga.model.parameter import Estimated
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.simulation.modal.pairing import (
@@ -81,7 +82,10 @@ class ModalTrials:
         self._nodes = np.array([nodes[one.node] for one in points], dtype=np.int64)
         axes = np.array([one.direction for one in points], dtype=float).reshape(-1, 3)
         self._axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
-        structures = ModalStructures(model)
+        # What begins late, or is in the clock, acts window by window as hypotheses do.
+        self._own = {name: one for name, one in model.effects.items() if _of_windows(one)}
+        always = {name: one for name, one in model.effects.items() if name not in self._own}
+        structures = ModalStructures(model.model_copy(update={"effects": always}))
         self._given = _contexts(model, structures.needed, readings)
         chosen, self._weights = self._supports(structures.needed)
         self._contexts: Values = {name: column[chosen] for name, column in self._given.items()} | {
@@ -117,7 +121,7 @@ class ModalTrials:
         """
         log_f = np.empty(self.readings.log_f.shape)
         shares, states = [], []
-        for own, acting in self._stages(effects):
+        for own, acting in self._stages({**self._own, **effects}):
             state = self._state(acting)
             log_f[own] = self._weights[own] @ state.log_f
             shares.append(float(own.mean()))
@@ -134,7 +138,7 @@ class ModalTrials:
     def looks(self, effects: Mapping[str, Effect]) -> dict[int, dict[str, Expected]]:
         """What modes look like where effects act, by number of the window and name of the mode."""
         found: dict[int, dict[str, Expected]] = {}
-        for own, acting in self._stages(effects):
+        for own, acting in self._stages({**self._own, **effects}):
             if not acting:
                 continue
             state = self._state(acting)
@@ -334,6 +338,12 @@ class ModalTrials:
             raise refused(structure, error) from None
 
 
+def _of_windows(effect: Effect) -> bool:
+    """Whether an effect of the model acts in some windows only, or on what a clock says."""
+    late = effect.onset is not None and effect.swinging() is effect
+    return late or effect.overrides("frequency_factor")
+
+
 def _partly(effect: Effect, weight: float) -> Effect | None:
     """An effect that acts as it does with a share of it; None where it does not yet."""
     if weight <= 0.0:
@@ -344,6 +354,7 @@ def _partly(effect: Effect, weight: float) -> Effect | None:
     values = {}
     for name, parameter in effect.parameters().items():
         own = getattr(effect, name)
+        own = own.value if isinstance(own, Estimated) else own
         if parameter.neutral is not None and isinstance(own, float):
             values[name] = float(blend(np.array([own]), parameter.neutral, np.array([weight]))[0])
     return always.with_values(values)

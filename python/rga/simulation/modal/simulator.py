@@ -1,5 +1,6 @@
 """Contexts in, natural frequencies and mode shapes out."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import as_model
+from rga.model.effect import Effect, Values
+from rga.model.readings import Readings
 from rga.model.schema import ExpectedMode, Model
 from rga.model.structure import Structure
 from rga.simulation.contexts import Contexts
@@ -75,13 +78,9 @@ class ModalSimulator:
         structures, of_row = self._structures.under(contexts)
         found = np.array([self._read(structure) for structure in structures])
         shown = found.reshape(len(structures), len(self.model.modal_sensors))[of_row]
-        clocks = [one for one in self.model.effects.values() if one.overrides("frequency_factor")]
-        if clocks:
-            hertz = np.array([one.point is None for one in self.model.modal_sensors.values()])
-            given = self._structures.table(contexts)
-            for clock in clocks:
-                factor = clock.frequency_factor(clock.values(given, len(shown)))
-                shown[:, hertz] *= factor[:, None]
+        recorded = [one for one in self.model.effects.values() if one.on_sensors and one.on_modes]
+        if recorded:
+            self._as_recorded(shown, recorded, self._structures.table(contexts))
         return shown
 
     def pair(self, contexts: Contexts | None = None) -> tuple[Pairing, FloatArray, FloatArray]:
@@ -96,6 +95,20 @@ class ModalSimulator:
         """
         frequencies, shapes = self._computed(self._structures.one_under(contexts))
         return paired(list(self.expected.values()), frequencies, shapes), frequencies, shapes
+
+    def _as_recorded(self, shown: FloatArray, effects: Sequence[Effect], given: Values) -> None:
+        """Change what sensors read as clocks and trackers do, in place."""
+        columns = {name: column for column, name in enumerate(self.model.modal_sensors)}
+        modes: dict[str, dict[str, int]] = {}
+        for name, sensor in self.model.modal_sensors.items():
+            modes.setdefault(sensor.mode, {})[sensor.point or ""] = columns[name]
+        hertz = [column for own in modes.values() for point, column in own.items() if not point]
+        readings = Readings(shown, columns, given["time"], np.zeros(len(shown)), modes)
+        for effect in effects:
+            values = effect.values(given, len(shown))
+            if effect.overrides("frequency_factor"):
+                shown[:, hertz] *= effect.frequency_factor(values)[:, None]
+            effect.change_readings(readings, values)
 
     def _look(self, name: str, mode: ExpectedMode) -> Expected:
         at = np.array([self._points[point] for point in mode.shape], dtype=np.int64)

@@ -96,9 +96,10 @@ class ModalStructures:
 def _swinging(model: Model) -> dict[str, Effect]:
     """Effects that change the structure, and those whose values these ask for."""
     off_sensors = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+    swinging = {name: one.swinging() for name, one in off_sensors.items()}
     if any(one.overrides("change_values") for one in off_sensors.values()):
-        return off_sensors
-    return {name: one for name, one in off_sensors.items() if one.structural}
+        return {name: swinging[name] or one for name, one in off_sensors.items()}
+    return {name: one for name, one in swinging.items() if one is not None}
 
 
 def computed_modes(

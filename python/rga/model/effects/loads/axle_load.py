@@ -10,6 +10,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from rga.arrays import FloatArray
 from rga.model.axes import local_axes
 from rga.model.effect import Effect, Values
+from rga.model.effects.loads.load_mass import LoadMass
 from rga.model.parameter import Number, Parameter, Value
 from rga.model.schema import Model
 from rga.model.structure import Load, Spread, Structure, check_direction, unit_vector
@@ -42,6 +43,8 @@ class AxleLoad(Effect):
             out, the frame member that joins them, or the nodes where none does.
         factor: on all of the forces.
         position: where the first axle stands [m]; when it falls with time the train is reversed.
+        inertia: the forces are weights that stand still while the structure swings, and bring their
+            mass; the nodes of the path share it by the lever rule.
     """
 
     kind: Literal["axle_load"] = "axle_load"
@@ -56,6 +59,7 @@ class AxleLoad(Effect):
     carried_by: Literal["nodes", "members"] | None = None
     factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
     position: Annotated[Value, Parameter("m", None)]
+    inertia: bool = False
 
     #: places along the path at which an axle is not shared between two others [m]
     _exact: tuple[float, ...] = PrivateAttr(default=())
@@ -97,6 +101,17 @@ class AxleLoad(Effect):
         self.past["train"] = np.array([position[-1], heading])
         return {**resolved, "heading": np.full(rows, heading)}
 
+    def swinging(self) -> Effect | None:
+        return LoadMass(kind=self.kind, load=self) if self.inertia else None
+
+    def weights(self, structure: Structure, value: Mapping[str, float]) -> FloatArray:
+        """Force on each node, float[nodes] [N]."""
+        numbers, stations = self._stations(structure)
+        of_row = {name: np.array([one]) for name, one in value.items()}
+        found = np.zeros(len(structure.arrays["coordinates"]))
+        found[numbers] = self._shares(of_row, stations)[:, 0] * value["factor"]
+        return found
+
     def exact_for(self, values: Values) -> Self:
         places = np.unique(self._stands(values))
         if len(places) > MOST_EXACT:
@@ -116,9 +131,7 @@ class AxleLoad(Effect):
 
     def _path(self, structure: Structure) -> tuple[FloatArray, list[Pattern]]:
         """Places along the path that take load [m], and a unit load on each of them."""
-        numbers = [structure.nodes[node] for node in self.path]
-        points = structure.arrays["coordinates"][numbers]
-        stations = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+        numbers, stations = self._stations(structure)
         force = np.append(unit_vector(self.direction), np.zeros(3))
         on_nodes: list[Pattern] = [({number: force}, []) for number in numbers]
         members = [self._between(structure, pair) for pair in pairwise(numbers)]
@@ -137,6 +150,13 @@ class AxleLoad(Effect):
                 patterns += self._within(structure, member, first, along - ends[0])
             patterns.append(last)
         return np.concatenate(places), patterns
+
+    def _stations(self, structure: Structure) -> tuple[list[int], FloatArray]:
+        """Numbers of the nodes of the path, and where they lie along it, float[nodes] [m]."""
+        numbers = [structure.nodes[node] for node in self.path]
+        points = structure.arrays["coordinates"][numbers]
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        return numbers, np.append(0.0, np.cumsum(steps))
 
     def _between(self, structure: Structure, pair: tuple[int, int]) -> int | None:
         """Number of the frame member that carries an axle between two nodes, if one does."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import AliasChoices, Field
 
 from rga.arrays import FloatArray
 from rga.model.action import Action
@@ -26,7 +27,8 @@ class StiffnessTemperature(Effect):
     members late.
 
     Attributes:
-        rate: [1/K] of the stiffness; negative where a higher temperature softens.
+        rate: [1/K] of the stiffness; negative where a higher temperature softens. A file may call
+            it `above`, beside `below`.
         kink: temperature from which on the rate holds [degC]. Left out, the rate holds at all
             temperatures, and the stiffness is as modelled at the one that warms nothing.
         below: [1/K] of the stiffness below the kink, where it is as modelled unless this is given.
@@ -42,7 +44,9 @@ class StiffnessTemperature(Effect):
     usual = f"rate {USUAL} 1/K: a judgement"
     structural = True
     group: Annotated[str | list[str], Place("group")]
-    rate: Annotated[Value, Parameter("1/K", 0.0)] = 0.0
+    rate: Annotated[
+        Value, Parameter("1/K", 0.0), Field(validation_alias=AliasChoices("rate", "above"))
+    ] = 0.0
     kink: Annotated[Value | None, Parameter("degC", None)] = None
     below: Annotated[Value, Parameter("1/K", 0.0)] = 0.0
     of: Literal["EA", "EI", "both"] = "EA"

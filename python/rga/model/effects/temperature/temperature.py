@@ -26,9 +26,11 @@ class Temperature(Effect):
     delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
 
     def check(self, model: Model) -> None:
-        """ValueError where groups are missing or overlap, or delta follows a logarithm."""
-        if isinstance(self.delta, Driven) and self.delta.log10:
-            raise ValueError("delta: a temperature follows its context linearly, not by log10")
+        """ValueError where groups are missing or overlap, or delta does not follow a line."""
+        if isinstance(self.delta, Driven) and (self.delta.log10 or self.delta.kink is not None):
+            raise ValueError(
+                "delta: a temperature follows its context linearly, not by log10 or with a kink"
+            )
         seen: dict[str, str] = {}
         for group in self.groups:
             if group not in model.groups:
