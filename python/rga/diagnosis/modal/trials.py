@@ -312,26 +312,28 @@ class ModalTrials:
         return np.asarray(np.einsum("mpk,pk->mp", shapes[:, self._nodes], self._axes))
 
     def _modes(self, structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Modes up to where the measured ones may be."""
+        """Modes up to where the measured ones may be.
+
+        Where a trial has more of them, the next begins with as many as ever all the same.
+        """
+        count = self._count
         while True:
+            near = self._near if count == self._count else None
             try:
-                if self._near is None:
-                    found = _core.modes(structure.arrays, structure.masses, self._count)
+                if near is None:
+                    found = _core.modes(structure.arrays, structure.masses, count)
                 else:
-                    found = self._near.modes(structure.arrays, structure.masses, self._count)
+                    found = near.modes(structure.arrays, structure.masses, count)
             except (_core.UnstableStructure, _core.InvalidInput) as error:
                 raise refused(structure, error) from None
             last = np.sqrt(found[0][-1]) / (2 * np.pi) if len(found[0]) else np.inf
-            if len(found[0]) < self._count or last > self._reach or self._count >= MOST:
+            if len(found[0]) < count or last > self._reach or count >= MOST:
                 return found
-            self._count = min(2 * self._count, MOST)
-            if self._near is not None:
-                self._near = self._reanalysis()
+            count = min(2 * count, MOST)
 
     def _reanalysis(self) -> _core.ModalReanalysis:
         structure = self._structures[self._middle]
-        self._near = None
-        self._modes(structure)
+        self._count = max(self._count, len(self._modes(structure)[0]))
         try:
             return _core.ModalReanalysis(structure.arrays, structure.masses, self._count)
         except (_core.UnstableStructure, _core.InvalidInput) as error:

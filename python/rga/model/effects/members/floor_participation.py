@@ -1,6 +1,6 @@
 """Floors that carry a share of the force of a chord."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,6 +12,8 @@ from rga.model.parameter import Parameter, Place, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
+#: share of its length by which a member of a chord goes along the axis that the floor runs along
+STRAIGHT = 0.95
 AREA, TIES = Positive(0.3, 1.0), Positive(0.03, 2.0)
 
 
@@ -52,7 +54,8 @@ class FloorParticipation(Effect):
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         for group, names in model.groups.items():
             nodes = [node for name in names for node in model.members[name].nodes]
-            if len(names) > 1 and max(nodes.count(node) for node in nodes) == 2:
+            joined = len(names) > 1 and max(nodes.count(node) for node in nodes) == 2
+            if joined and _runs_along_an_axis(model, names):
                 yield {"group": group}
 
     @classmethod
@@ -79,3 +82,11 @@ class FloorParticipation(Effect):
         ties = np.column_stack([beside, parallel])
         structure.add_springs(ties, along, value["connector_stiffness"])
         structure.add_bars(parallel[numbers.reshape(-1, 2)], value["area"], chosen)
+
+
+def _runs_along_an_axis(model: Model, names: Iterable[str]) -> bool:
+    """Whether members lie along one global axis: no floor runs along rakers or diagonals."""
+    ends = np.array([[model.nodes[node] for node in model.members[name].nodes] for name in names])
+    spans = np.abs(ends[:, 1] - ends[:, 0])
+    along = spans / np.linalg.norm(spans, axis=1, keepdims=True)
+    return bool((along.min(axis=0) >= STRAIGHT).any())
