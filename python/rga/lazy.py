@@ -19,6 +19,8 @@ EXTRAS = {
     "ezdxf": "formats",
     "openpyxl": "formats",
     "nptdms": "formats",
+    "pyuff": "formats",
+    "pyfive": "formats",
     "msgspec": "serve",
     "fastapi": "serve",
     "starlette": "serve",
