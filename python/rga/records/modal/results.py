@@ -10,7 +10,7 @@ import polars as pl
 from rga.errors import InputError, kind_of
 from rga.model import Model
 from rga.records.frames import table_of_frame
-from rga.records.modal.columns import DURATION, TIME
+from rga.records.modal.columns import DURATION, IMAGINARY, TIME
 from rga.records.modal.formats.pyoma2 import FREQUENCIES, POINTS, RESULT, table_of_arrays
 from rga.records.modal.read import modal_record_of
 from rga.records.modal.record import ModalRecord
@@ -64,6 +64,8 @@ def modal_record(
         arrays |= {POINTS: list(points), TIME: [at], DURATION: duration}
         tables.append(table_of_arrays(arrays, Path(f"result {number}")))
     frame = pl.concat([one.frame for one in tables], how="diagonal_relaxed")
+    # A window whose shapes are real has no imaginary parts beside one whose shapes are complex.
+    frame = frame.with_columns(pl.col(f"^.*{IMAGINARY}$").fill_null(0.0))
     return modal_record_of(replace(table_of_frame(frame), path=Path("results")), model)
 
 

@@ -127,7 +127,8 @@ def _shapes(
         shapes = shapes.reshape((-1, modes) if windows == 1 else (windows, -1, modes))
     shapes = shapes[None] if shapes.ndim == 2 and windows == 1 else shapes
     if shapes.ndim != 3 or (len(shapes), shapes.shape[2]) != (windows, modes):
-        raise _unfit(SHAPES, shapes.shape, f"channels and {modes} modes", where)
+        given = shapes.shape[1:] if windows == 1 else shapes.shape
+        raise _unfit(SHAPES, given, f"channels and {modes} modes", where)
     if arrays.get(IMAGINARY_SHAPES) is not None:
         imaginary = _numbers(arrays, IMAGINARY_SHAPES, where)
         shapes = shapes + 1j * _like(imaginary, shapes, IMAGINARY_SHAPES, where)
