@@ -30,6 +30,7 @@ EXTRAS = {
     "argon2": "serve",
     "prometheus_client": "serve",
     "asyncua": "opcua",
+    "pyoma2": "oma",
 }
 
 
