@@ -74,6 +74,8 @@ def operational_modes(motion: FloatArray, step: float, highest: float) -> list[O
             "highest",
             f"look for frequencies up to {1.5 / (PER_PERIOD * step):.3g} Hz",
         )
+    if not np.isfinite(motion).all():
+        raise InputError("a reading is missing", "window", "give a stretch without gaps")
     if not (np.ptp(motion, axis=0) > 0).all():
         raise InputError("a sensor does not move", "window", "leave it out")
     of_each = int(max(1, 1.0 / (PER_PERIOD * highest * step)))
