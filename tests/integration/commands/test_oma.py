@@ -46,7 +46,7 @@ def test_windows_become_a_record(rga: Callable[..., Outcome], logged: Path, tmp_
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--highest", 50), "do not show frequencies up to 50 Hz"),
+        (("--highest", 50, "--minutes", 2), "do not show frequencies up to 50 Hz"),
         (("--highest", 5, "--minutes", 20), "give shorter"),
         (("--highest", 5, "--minutes", 0.1), "give windows of"),
     ],

@@ -8,7 +8,9 @@ are alike in frequency and shape are a mode, where enough orders have them.
 
 import logging
 from collections.abc import Sequence
+from contextlib import redirect_stderr
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +38,7 @@ HARD = {"xi_max": 0.1, "mpc_lim": 0.7, "mpd_lim": 0.3, "CoV_max": 0.2}
 #: of the same mode: frequencies apart, and MAC
 SAME, ALIKE = 0.02, 0.9
 #: share of the orders that find a mode
-OFTEN = 0.4
+OFTEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,8 @@ def _stable_poles(motion: FloatArray, step: float, rows: int) -> tuple[FloatArra
     setup = SingleSetup(motion, fs=1.0 / step)
     identification = SSI(name="windows", br=rows, ordmax=most, step=2, sc=STABLE, hc=HARD)
     setup.add_algorithms(identification)
-    setup.run_all()
+    with redirect_stderr(StringIO()):  # it draws bars of progress
+        setup.run_all()
     found = identification.result
     at = np.nonzero((found.Lab == 1) & np.isfinite(found.Fn_poles))
     shapes = found.Phi_poles[at]
