@@ -49,8 +49,8 @@ app = typer.Typer(
 )
 for command in (
     example, import_model, import_record, free_decay, oma, check, draw, diagnose, diagnose_many,
-    plan, run, status, replay, accept, reject, rollback, export, serve, user, feed, simulate, results,
-    modes, whatif, dataset, verify, schema, doctor,
+    plan, run, status, replay, accept, reject, rollback, export, serve, user, feed, simulate,
+    results, modes, whatif, dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

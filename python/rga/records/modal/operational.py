@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from scipy import signal
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.lazy import needing_extras
 from rga.records.modal.columns import DAMPING, DURATION, FREQUENCY, TIME
@@ -96,7 +96,9 @@ def operational_modes(motion: FloatArray, step: float, highest: float) -> list[O
     return _alike(frequency[kept], damping[kept], shape[kept], order[kept], orders)
 
 
-def _stable_poles(motion: FloatArray, step: float, rows: int) -> tuple[FloatArray, ...]:
+def _stable_poles(
+    motion: FloatArray, step: float, rows: int
+) -> tuple[FloatArray, FloatArray, np.ndarray, IntArray, int]:
     """Frequency, damping, shape of length one and order of stable poles; and how many orders."""
     with needing_extras():
         from pyoma2.algorithms import SSI
@@ -116,7 +118,7 @@ def _stable_poles(motion: FloatArray, step: float, rows: int) -> tuple[FloatArra
 
 
 def _alike(
-    frequency: FloatArray, damping: FloatArray, shape: np.ndarray, order: FloatArray, orders: int
+    frequency: FloatArray, damping: FloatArray, shape: np.ndarray, order: IntArray, orders: int
 ) -> list[OperationalMode]:
     """Modes of poles that are alike in enough orders: those with the most first."""
     same = np.abs(np.log(frequency[:, None] / frequency)) < SAME
