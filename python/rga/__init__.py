@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, RecordMapping, load_record
+    from rga.records.modal.results import modal_record
     from rga.simulation import Modes, Results, Simulator, modes, results
     from rga.twin import Twin
 
@@ -59,6 +60,7 @@ _HOMES = {
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
+    "modal_record": "rga.records.modal.results",
     "modes": "rga.simulation",
     "plan": "rga.planning.planner",
     "plot_findings": "rga.drawing.charts",
@@ -99,6 +101,7 @@ __all__ = [
     "load_findings",
     "load_model",
     "load_record",
+    "modal_record",
     "modes",
     "plan",
     "plot_findings",

@@ -19,6 +19,8 @@ EXTRAS = {
     "ezdxf": "formats",
     "openpyxl": "formats",
     "nptdms": "formats",
+    "pyuff": "formats",
+    "pyfive": "formats",
     "msgspec": "serve",
     "fastapi": "serve",
     "starlette": "serve",
@@ -28,6 +30,7 @@ EXTRAS = {
     "argon2": "serve",
     "prometheus_client": "serve",
     "asyncua": "opcua",
+    "pyoma2": "oma",
 }
 
 

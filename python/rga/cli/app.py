@@ -29,6 +29,7 @@ from rga.cli.preparation.example import example
 from rga.cli.preparation.free_decay import free_decay
 from rga.cli.preparation.import_model import import_model
 from rga.cli.preparation.import_record import import_record
+from rga.cli.preparation.oma import oma
 from rga.cli.schema import schema
 from rga.cli.simulation.dataset import dataset
 from rga.cli.simulation.modes import modes
@@ -47,9 +48,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    example, import_model, import_record, free_decay, check, draw, diagnose, diagnose_many, plan,
-    run, status, replay, accept, reject, rollback, export, serve, user, feed, simulate, results,
-    modes, whatif, dataset, verify, schema, doctor,
+    example, import_model, import_record, free_decay, oma, check, draw, diagnose, diagnose_many,
+    plan, run, status, replay, accept, reject, rollback, export, serve, user, feed, simulate,
+    results, modes, whatif, dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -18,6 +18,8 @@ from rga.records.formats.plain import read_plain
 from rga.records.formats.tdms import MARK as TDMS
 from rga.records.formats.tdms import read_tdms
 from rga.records.formats.toa5 import is_toa5, read_toa5
+from rga.records.formats.universal.datasets import is_universal
+from rga.records.formats.universal.histories import read_histories
 from rga.records.mapping import FileMapping
 from rga.records.table import Table
 
@@ -48,6 +50,8 @@ def read_format(
         return read_matlab(data, path, mapping)
     if is_catman(data):
         return read_catman_binary(data, path, mapping)
+    if is_universal(data):
+        return read_histories(path, mapping)
     return _read_text(decoded(data, path, mapping.encoding), mapping, known)
 
 

@@ -74,8 +74,10 @@ def read_matlab(data: bytes, path: Path, mapping: FileMapping) -> Table:
 
 
 def _channels(data: bytes) -> Arrays:
-    """Arrays by their names, matrices as columns."""
+    """Real arrays by their names, matrices as columns."""
     for name, array in arrays_of(data):
+        if np.iscomplexobj(array):
+            continue
         if array.ndim < 2:
             yield name, array
         elif array.ndim == 2 and min(array.shape) <= _MOST_COLUMNS:

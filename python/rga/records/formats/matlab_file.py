@@ -1,4 +1,4 @@
-"""What is in a MATLAB file of version 4 to 7: its real arrays of numbers, by name.
+"""What is in a MATLAB file of version 4 to 7: its arrays of numbers, by name.
 
 Source: the layout that MathWorks publishes as "MAT-File Format". SciPy reads such files as well,
 but ends the process at types that it does not know, and unpacks without a bound.
@@ -44,14 +44,14 @@ Arrays = Iterator[tuple[str, np.ndarray[Any, Any]]]
 
 
 def arrays_of(data: bytes) -> Arrays:
-    """Real arrays of numbers in a file, those in structs as `struct.field`.
+    """Arrays of numbers in a file, those in structs as `struct.field`.
 
     Args:
         data: the file.
 
     Returns:
-        Names, and arrays without dimensions of one element. Complex and sparse arrays, words,
-        cells and arrays of structs are left out.
+        Names, and arrays without dimensions of one element. Sparse arrays, words, cells and
+        arrays of structs are left out.
 
     Raises:
         ValueError: the file is damaged, repeats a name, or holds far more than its size lets
@@ -161,9 +161,12 @@ class _File:
                 if inner:
                     field = _text(fields[begin : begin + length])
                     yield from self.matrix(inner, order, f"{name}.{field}", depth + 1)
-        elif kind in _NUMBERS and not flags & _COMPLEX:
-            stored, numbers = _following(elements)
-            yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
+        elif kind in _NUMBERS:
+            parts = [_following(elements) for _ in range(2 if flags & _COMPLEX else 1)]
+            real, *imaginary = (
+                _shaped(numbers, f"{order}{_TYPES[stored]}", shape) for stored, numbers in parts
+            )
+            yield name, real + 1j * imaginary[0] if imaginary else real
 
     def version_4(self) -> Arrays:
         data, place = self.data, 0
@@ -178,10 +181,17 @@ class _File:
             # A name ends in a zero.
             if min(rows, columns) < 0 or length < 2 or begin + size > len(data):
                 raise ValueError("it is cut off, or a length in it is damaged")
-            if said % 10 == _FULL and not complex_:
-                name, numbers = _text(data[begin - length : begin]), data[begin : begin + size]
-                yield name, _shaped(numbers, f"{order}{kind}", [rows, columns])
-            place = begin + size * (2 if complex_ else 1)
+            end = begin + size * (2 if complex_ else 1)
+            if end > len(data):
+                raise ValueError("it is cut off")
+            if said % 10 == _FULL:
+                real, *imaginary = (
+                    _shaped(data[part : part + size], f"{order}{kind}", [rows, columns])
+                    for part in ((begin, begin + size) if complex_ else (begin,))
+                )
+                name = _text(data[begin - length : begin])
+                yield name, real + 1j * imaginary[0] if imaginary else real
+            place = end
 
 
 def _following(elements: Elements) -> tuple[int, memoryview]:

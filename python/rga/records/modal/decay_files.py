@@ -10,8 +10,8 @@ import polars as pl
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.records.mapping import TimeColumns
+from rga.records.modal.columns import DAMPING, DEVIATION, DURATION, FREQUENCY, TIME
 from rga.records.modal.free_decay import DecayingMode
-from rga.records.modal.read import DAMPING, DEVIATION, DURATION, FREQUENCY, TIME
 from rga.records.read import read_table
 from rga.records.record import time_label
 from rga.records.times import read_clock

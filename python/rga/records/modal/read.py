@@ -1,5 +1,7 @@
-"""Reading a modal record: a long table, one line a mode found in a window."""
+"""Reading a modal record: one line a mode found in a window, or a column a mode."""
 
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,17 +12,25 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.records.mapping import TimeColumns
+from rga.records.modal.columns import (
+    COLUMNS,
+    DAMPING,
+    DEVIATION,
+    DURATION,
+    FREQUENCY,
+    HINT,
+    IMAGINARY,
+    TIME,
+)
+from rga.records.modal.formats import read_modal_table
 from rga.records.modal.record import ModalRecord
-from rga.records.read import read_table
 from rga.records.table import Table
 from rga.records.times import read_clock
 
-#: columns beside points and contexts
-TIME, DURATION, FREQUENCY, DEVIATION, DAMPING, HINT = (
-    "time", "duration", "f", "f_sd", "zeta", "mode",
-)  # fmt: skip
-#: ending of a column with the imaginary part of a shape at a point
-IMAGINARY = "_im"
+#: column of a wide table, by the number of a mode: f1, f_2
+_NUMBERED = re.compile(r"f_?(\d+)")
+#: unit of a column, where a file states one
+_UNITS = {FREQUENCY: "Hz", DEVIATION: "Hz", DURATION: "s", DAMPING: "-"}
 
 
 def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
@@ -30,23 +40,44 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
     [-] and `mode`, a hint, may be there, and columns named after points and context variables of
     the model. The imaginary part of a shape at point A1 is in a column A1_im.
 
-    A wide table has a line a window, and in place of `f` columns named after modes of the model or
-    after sensors of their frequencies; an empty cell: the mode was not found. It tells no shapes.
+    A wide table has a line a window, and in place of `f` columns of frequencies [Hz]: of a mode L1
+    of the model L1, f_L1, or the name of the sensor of its frequency; f1, f2, ... of modes of which
+    nobody says which they are. An empty cell: the mode was not found. It tells no shapes.
+
+    Results of other programs are read as well (`rga.records.modal.formats`); their channels are
+    points of the model by name.
 
     Args:
-        path: CSV, Parquet or any other format of records.
+        path: CSV, Parquet or any other format of records; results of pyOMA2 (.npz, .mat, .json),
+            NetCDF of pyOMA, or a universal file with modes.
         model: whose points and contexts name columns.
 
     Raises:
-        InputError: a column is missing or holds no number; a frequency is not above zero, as those
-            that are normalised; an imaginary part stands alone; or no entry is there.
+        InputError: a column is missing, holds no number or has another unit; a frequency is not
+            above zero, as those that are normalised; an imaginary part stands alone; or no entry is
+            there.
+        MissingPackageError: a package that reads the format is not installed.
     """
-    known = (TIME, DURATION, FREQUENCY, DEVIATION, DAMPING, HINT, *model.points, *model.context)
     named = modes_of_columns(model)
-    table = read_table(path, known=(*known, *named))
+    table = read_modal_table(path, known=(*COLUMNS, *model.points, *model.context, *named))
+    return modal_record_of(table, model)
+
+
+def modal_record_of(table: Table, model: Model) -> ModalRecord:
+    """The modal record that a table holds, long or wide.
+
+    Args:
+        table: with the columns of `load_modal_record`.
+        model: whose points and contexts name columns.
+
+    Raises:
+        InputError: as `load_modal_record` does.
+    """
+    table = _without_units(table, model)
     columns = table.frame.columns
-    if FREQUENCY not in columns and any(name in named for name in columns):
-        return _wide(table, model)
+    wide = {} if FREQUENCY in columns else _wide_columns(columns, model)
+    if wide:
+        return _wide(table, model, wide)
     if FREQUENCY not in columns:
         raise InputError(
             f"there is no column {FREQUENCY!r}",
@@ -74,7 +105,7 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
     shapes, realness = _shapes(table, points)
     time, start = _time(table)
     contexts = {name: table.numbers(name) for name in model.context if name in columns}
-    used = {*known, *(name + IMAGINARY for name in points)}
+    used = {*COLUMNS, *points, *model.context, *(name + IMAGINARY for name in points)}
     return ModalRecord(
         time=time,
         start=start,
@@ -103,10 +134,44 @@ def modes_of_columns(model: Model) -> dict[str, str]:
     return {**sensors, **{name: name for name in model.modes}}
 
 
-def _wide(table: Table, model: Model) -> ModalRecord:
+def _wide_columns(columns: Sequence[str], model: Model) -> dict[str, str]:
+    """Columns of frequencies, and the mode that each names: a hint, and no identity."""
+    named = modes_of_columns(model)
+    known = {**named, **{f"{FREQUENCY}_{name}": name for name in model.modes}}
+    numbered = {
+        name: found[1]
+        for name in columns
+        if name not in {**model.context, **model.points}
+        and (found := _NUMBERED.fullmatch(name)) is not None
+    }
+    return {name: one for name in columns if (one := {**numbered, **known}.get(name)) is not None}
+
+
+def _without_units(table: Table, model: Model) -> Table:
+    """The table with the names of columns as they are without units in them.
+
+    Raises:
+        InputError: a column has another unit than it must have.
+    """
+    bare = {
+        name: one
+        for name, one in table.names.items()
+        if one in {*_UNITS, HINT, *_wide_columns([one], model)} and one not in table.frame.columns
+    }
+    frame = table.frame.rename(bare)
+    wide = {} if FREQUENCY in frame.columns else _wide_columns(frame.columns, model)
+    units = {bare.get(name, name): unit for name, unit in table.units.items()}
+    for name, wanted in {**_UNITS, **dict.fromkeys(wide, "Hz")}.items():
+        if name in frame.columns and (unit := units.get(name, wanted)) != wanted:
+            raise InputError(
+                f"the unit of {name!r} is {unit!r}", str(table.path), f"give it in {wanted}"
+            )
+    return replace(table, frame=frame, units=units)
+
+
+def _wide(table: Table, model: Model, named: Mapping[str, str]) -> ModalRecord:
     """The record of a table with a line a window and a column a mode."""
-    columns, named = table.frame.columns, modes_of_columns(model)
-    chosen = [name for name in columns if name in named]
+    columns, chosen = table.frame.columns, list(named)
     found = np.array([table.numbers(name) for name in chosen]).T
     bad = found <= 0
     if bad.any():

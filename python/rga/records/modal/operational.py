@@ -1,0 +1,194 @@
+"""Modes of a structure that wind and traffic move, window by window, by pyOMA2.
+
+Stochastic subspace identification from covariances (SSI-cov; Peeters and De Roeck, Reference-based
+stochastic subspace identification for output-only modal analysis, Mechanical Systems and Signal
+Processing 13, 1999) with many orders. Poles that pyOMA2 calls stable from order to order and that
+are alike in frequency and shape are a mode, where enough orders have them.
+"""
+
+import logging
+from collections.abc import Sequence
+from contextlib import redirect_stderr
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+from scipy import signal
+
+from rga.arrays import FloatArray, IntArray
+from rga.errors import InputError
+from rga.lazy import needing_extras
+from rga.records.modal.columns import DAMPING, DURATION, FREQUENCY, TIME
+from rga.records.modal.decay_files import Decay
+from rga.records.modal.formats.entries import table_of_entries
+from rga.records.record import time_label
+from rga.records.table import Table
+
+#: samples that are kept of a period of the highest frequency
+PER_PERIOD = 3
+#: block rows, rows of all sensors in the Hankel matrix at most, and orders
+ROWS, TALLEST, FEWEST, ORDERS = 40, 1200, 10, 60
+#: samples in a block row of which anything is found
+LEAST = 20
+#: how poles may differ from order to order: frequency, damping and 1 - MAC; most damping, and least
+#: collinearity and greatest deviation of phases
+STABLE = {"err_fn": 0.01, "err_xi": 0.1, "err_phi": 0.02}
+HARD = {"xi_max": 0.1, "mpc_lim": 0.7, "mpd_lim": 0.3, "CoV_max": 0.2}
+#: of the same mode: frequencies apart, and MAC
+SAME, ALIKE = 0.02, 0.9
+#: share of the orders that find a mode
+OFTEN = 0.5
+
+
+@dataclass(frozen=True)
+class OperationalMode:
+    """A mode found in a window.
+
+    Attributes:
+        frequency: [Hz].
+        damping: share of the critical one.
+        shape: complex[sensors], to any scale.
+        found: share of the orders that have it.
+    """
+
+    frequency: float
+    damping: float
+    shape: np.ndarray
+    found: float
+
+
+def operational_modes(motion: FloatArray, step: float, highest: float) -> list[OperationalMode]:
+    """The modes in a window of readings, the lowest first.
+
+    Args:
+        motion: what sensors of one kind read, float[samples, sensors].
+        step: between samples [s].
+        highest: frequency that is looked for [Hz].
+
+    Raises:
+        InputError: samples are too few or too far apart, or a sensor does not move.
+        MissingPackageError: pyOMA2 is not installed.
+    """
+    if not 0 < PER_PERIOD * highest * step <= 1.5:
+        raise InputError(
+            f"samples every {step:g} s do not show frequencies up to {highest:g} Hz",
+            "highest",
+            f"look for frequencies up to {1.5 / (PER_PERIOD * step):.3g} Hz",
+        )
+    if not np.isfinite(motion).all():
+        raise InputError("a reading is missing", "window", "give a stretch without gaps")
+    if not (np.ptp(motion, axis=0) > 0).all():
+        raise InputError("a sensor does not move", "window", "leave it out")
+    of_each = int(max(1, 1.0 / (PER_PERIOD * highest * step)))
+    rows = max(FEWEST, min(ROWS, TALLEST // motion.shape[1]))
+    if len(motion) < of_each * rows * LEAST:
+        raise InputError(
+            f"a window lasts {len(motion) * step:g} s",
+            f"with frequencies up to {highest:g} Hz",
+            f"give windows of {of_each * rows * LEAST * step:.3g} s at least",
+        )
+    motion = signal.detrend(motion, axis=0)
+    if of_each > 1:
+        motion = signal.decimate(motion, of_each, n=20 * of_each, ftype="fir", axis=0)
+    frequency, damping, shape, order, orders = _stable_poles(motion, step * of_each, rows)
+    kept = frequency < highest
+    return _alike(frequency[kept], damping[kept], shape[kept], order[kept], orders)
+
+
+def _stable_poles(
+    motion: FloatArray, step: float, rows: int
+) -> tuple[FloatArray, FloatArray, np.ndarray, IntArray, int]:
+    """Frequency, damping, shape of length one and order of stable poles; and how many orders."""
+    with needing_extras():
+        from pyoma2.algorithms import SSI
+        from pyoma2.setup import SingleSetup
+    most = min(ORDERS, rows * motion.shape[1])
+    logging.getLogger("pyoma2").setLevel(logging.WARNING)
+    setup = SingleSetup(motion, fs=1.0 / step)
+    identification = SSI(name="windows", br=rows, ordmax=most, step=2, sc=STABLE, hc=HARD)
+    setup.add_algorithms(identification)
+    with redirect_stderr(StringIO()):  # it draws bars of progress
+        setup.run_all()
+    found = identification.result
+    at = np.nonzero((found.Lab == 1) & np.isfinite(found.Fn_poles))
+    shapes = found.Phi_poles[at]
+    shapes = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
+    return found.Fn_poles[at], found.Xi_poles[at], shapes, at[1], found.Lab.shape[1]
+
+
+def _alike(
+    frequency: FloatArray, damping: FloatArray, shape: np.ndarray, order: IntArray, orders: int
+) -> list[OperationalMode]:
+    """Modes of poles that are alike in enough orders: those with the most first."""
+    same = np.abs(np.log(frequency[:, None] / frequency)) < SAME
+    same &= np.abs(shape.conj() @ shape.T) ** 2 > ALIKE
+    left, modes = np.ones(len(frequency), dtype=bool), list[OperationalMode]()
+    while left.any():
+        own = max((one & left for one in same[left]), key=lambda one: len(np.unique(order[one])))
+        found = len(np.unique(order[own])) / orders
+        if found < OFTEN:
+            break
+        middle = shape[own][0]
+        turned = shape[own] * np.exp(-1j * np.angle(shape[own] @ middle.conj()))[:, None]
+        modes.append(
+            OperationalMode(
+                float(np.median(frequency[own])),
+                float(np.median(damping[own])),
+                turned.mean(0),
+                found,
+            )
+        )
+        left &= ~own
+    return sorted(modes, key=lambda one: one.frequency)
+
+
+def windows_of(measured: Decay, seconds: float) -> list[Decay]:
+    """Windows one after the other; what is left at the end is left out.
+
+    Args:
+        measured: the whole of it.
+        seconds: that each lasts.
+
+    Raises:
+        InputError: not one window lasts as long.
+    """
+    samples = round(seconds / measured.step)
+    count = len(measured.motion) // max(samples, 1)
+    if count == 0 or samples < 2:
+        raise InputError(
+            f"the file lasts {measured.duration:g} s", f"windows of {seconds:g} s", "give shorter"
+        )
+    half = measured.duration / 2
+    return [
+        Decay(
+            measured.motion[at * samples : (at + 1) * samples],
+            measured.step,
+            measured.points,
+            time_label(measured.middle, (at + 0.5) * samples * measured.step - half),
+        )
+        for at in range(count)
+    ]
+
+
+def operational_table(
+    windows: Sequence[Decay], modes: Sequence[Sequence[OperationalMode]], path: Path
+) -> Table:
+    """Modes of windows as a modal record.
+
+    No standard deviation is written: that of windows beside each other is told by themselves.
+
+    Raises:
+        InputError: no mode was found.
+    """
+    found = [(window, one) for window, own in zip(windows, modes, strict=True) for one in own]
+    if not found:
+        raise InputError("no mode was found in any window", str(path), "give longer windows")
+    entries = {
+        TIME: [window.middle for window, _ in found],
+        DURATION: [window.duration for window, _ in found],
+        FREQUENCY: [one.frequency for _, one in found],
+        DAMPING: [one.damping for _, one in found],
+    }
+    shapes = np.array([one.shape for _, one in found])
+    return table_of_entries(path, "windows", entries, shapes, windows[0].points)
