@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray, by_name
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, when_all_act
 from rga.model.schema import Model
 from rga.model.structure import Structure, build_structure
 from rga.simulation.contexts import Contexts, contexts_by_name
+from rga.simulation.dispatch import APART, Request, variation_under
 from rga.simulation.paths.response import refused
 from rga.simulation.simulator import Simulator
 
@@ -37,10 +38,7 @@ class ModalStructures:
         Raises:
             InputError: as `results`; or one has no natural frequency of its own.
         """
-        given = self._given(contexts)
-        values = self._simulator.parameters(given)
-        rows = max((np.size(column) for column in given.values()), default=1)
-        request = self._simulator.assembly.request(values, rows)
+        request = self._request(contexts)
         structures = [request.change(state) for state in request.states]
         if not all(structure.linear for structure in structures):
             raise InputError(
@@ -50,6 +48,40 @@ class ModalStructures:
                 "leave out these effects, or put stiffnesses in their place",
             )
         return structures, request.state_of_row
+
+    def samples(self, contexts: Contexts | None) -> tuple[Structure, FloatArray, IntArray] | None:
+        """What varies between rows of contexts, where it is stiffnesses of whole members or springs.
+
+        Args:
+            contexts: as for `results`.
+
+        Returns:
+            A structure; factors above zero on its members, then springs, float[states, elements];
+            the number of each row's state, int[rows]. None where there are few states, or where
+            something else varies: masses, say.
+
+        Raises:
+            InputError: as `results`.
+        """
+        request = self._request(contexts)
+        states = request.states
+        varied = variation_under(request, states) if len(states) > APART else None
+        if varied is None or not varied.start.linear or not (varied.first > 0).all():
+            return None
+        looked_at = (states.min(axis=0), states.max(axis=0), states[0], states[len(states) // 2])
+        if not all(_weigh_alike(varied.start, request.change(state)) for state in looked_at):
+            return None
+        count = len(varied.start.arrays["ends"])
+        factors = np.ones((len(states), count + len(varied.start.arrays["spring_stiffness"])))
+        chosen = np.append(varied.members, count + varied.springs)
+        factors[:, chosen] = varied.at(states) / varied.first
+        return (varied.start, factors, request.state_of_row) if (factors > 0).all() else None
+
+    def _request(self, contexts: Contexts | None) -> Request:
+        given = self._given(contexts)
+        values = self._simulator.parameters(given)
+        rows = max((np.size(column) for column in given.values()), default=1)
+        return self._simulator.assembly.request(values, rows)
 
     def table(self, contexts: Contexts | None) -> Values:
         """Contexts with time, float[rows] each, with the errors of `under` (InputError)."""
@@ -99,6 +131,15 @@ def _swinging(model: Model) -> dict[str, Effect]:
     if any(one.overrides("change_values") for one in off_sensors.values()):
         return off_sensors
     return {name: one for name, one in off_sensors.items() if one.structural}
+
+
+def _weigh_alike(one: Structure, other: Structure) -> bool:
+    # Read by name they would be copied.
+    pairs = [
+        (dict.__getitem__(by_name(each), name) for each in (one.masses, other.masses))
+        for name in by_name(one.masses)
+    ]
+    return all(np.array_equal(*pair) for pair in pairs)
 
 
 def computed_modes(

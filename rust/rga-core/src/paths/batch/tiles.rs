@@ -137,12 +137,7 @@ impl<V: Copy, const SIGNED: bool> Hand<'_, V, SIGNED> {
 /// `sums` -= the products of rows from each of two places on, over all columns: times the signs of
 /// these, or where `SIGNED` is false, there are none.
 #[inline(always)]
-pub(super) fn take_products<
-    L: Lanes,
-    const TALL: usize,
-    const WIDE: usize,
-    const SIGNED: bool,
->(
+pub(super) fn take_products<L: Lanes, const TALL: usize, const WIDE: usize, const SIGNED: bool>(
     lanes: L,
     (columns, signs): (&[L::Numbers], &[L::Numbers]),
     height: usize,

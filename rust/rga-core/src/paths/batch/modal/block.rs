@@ -169,8 +169,7 @@ impl<L: Lanes> Sums<'_, L> {
                 for row in 0..ROWS {
                     for beside in 0..BESIDE {
                         let value = given[BESIDE * row + other];
-                        sums[row][beside] =
-                            lanes.mul_add(value, shares[beside], sums[row][beside]);
+                        sums[row][beside] = lanes.mul_add(value, shares[beside], sums[row][beside]);
                     }
                 }
             }

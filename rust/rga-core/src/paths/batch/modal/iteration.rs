@@ -149,7 +149,12 @@ impl<'a, L: Lanes> Iteration<'a, L> {
             // T1 = s A x - x, and T(k + 1) = 2 (s A Tk - Tk) - T(k - 1).
             self.mass_times_filtered(lanes);
             self.images.copy_from_slice(&self.forces);
-            Self::apply_inverse(lanes, &self.cholesky, &mut self.images, self.swinging.size());
+            Self::apply_inverse(
+                lanes,
+                &self.cholesky,
+                &mut self.images,
+                self.swinging.size(),
+            );
             let numbers = (self.filtered.iter_mut()).zip(&mut self.vectors);
             for ((now, before), image) in numbers.zip(&self.images) {
                 let next = lanes.sub(lanes.mul(scale, *image), *now);
@@ -175,12 +180,7 @@ impl<'a, L: Lanes> Iteration<'a, L> {
     }
 
     #[inline(always)]
-    fn apply_inverse(
-        lanes: L,
-        cholesky: &Cholesky<L>,
-        vectors: &mut [L::Numbers],
-        size: usize,
-    ) {
+    fn apply_inverse(lanes: L, cholesky: &Cholesky<L>, vectors: &mut [L::Numbers], size: usize) {
         for group in vectors.chunks_exact_mut(BESIDE * size) {
             cholesky.solve::<BESIDE>(lanes, group);
         }
@@ -250,10 +250,7 @@ impl<'a, L: Lanes> Iteration<'a, L> {
         self.shift = lanes.div(one, between);
         let most = lanes.mul(lanes.splat(PROVED), lanes.sub(inside, between));
         let small = lanes.at_most(residuals, most);
-        let apart = lanes.at_most(
-            lanes.mul(lanes.splat(1.0 + GAP), outside),
-            inside,
-        );
+        let apart = lanes.at_most(lanes.mul(lanes.splat(1.0 + GAP), outside), inside);
         let proved = lanes.and(lanes.and(small, apart), self.projected.sound);
         self.quotients(lanes, numbers);
         lanes.bits(proved)

@@ -154,10 +154,7 @@ impl<L: Lanes> Projected<L> {
             self.heavy[high * width + high],
         );
         let size = lanes.abs(lanes.mul(first, last));
-        let counts = lanes.above(
-            lanes.mul(off, off),
-            lanes.mul(lanes.splat(ROUNDING), size),
-        );
+        let counts = lanes.above(lanes.mul(off, off), lanes.mul(lanes.splat(ROUNDING), size));
         if !lanes.any(counts) {
             return false;
         }
