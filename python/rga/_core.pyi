@@ -226,12 +226,13 @@ class Reanalysis:
 
 @final
 class ModalBatch:
-    """Modes of samples whose stiffnesses all vary; `help(ModalBatch)` tells more."""
+    """Modes of samples whose stiffnesses vary; `help(ModalBatch)` tells more."""
 
     def __new__(
         cls,
         structure: StructureArrays,
         masses: MassArrays,
+        varied: NDArray[np.int64],
         count: int,
         dofs: NDArray[np.int64],
         instructions: str | None = None,
@@ -239,7 +240,7 @@ class ModalBatch:
     def modes(
         self, factors: NDArray[np.float64], threads: int = 1
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Eigenvalues [k, c] and shapes [k, c, d] of samples, from factors [k, m + s]."""
+        """Eigenvalues [k, c] and shapes [k, c, d] of samples, from factors [k, e]."""
 
 @final
 class ModalReanalysis:

@@ -157,16 +157,18 @@ impl ModalReanalysis {
     }
 }
 
-/// Modes of samples of a structure of which every stiffness may vary; masses stay.
+/// Modes of samples of a structure of which stiffnesses vary, few or all; masses stay.
 ///
 /// Samples are solved together, in the lanes of a processor: block inverse iteration from the modes
 /// of the structure, until residuals prove each eigenvalue to a part in 1e9; then all are counted
-/// (Sylvester's law). A sample that is not proved or counted so is solved by itself, as by
-/// `ModalReanalysis`.
+/// (Sylvester's law). Where up to 32 terms of rank one vary, that is done in a space of few
+/// vectors, and residuals and count hold what lies outside too. A sample that is not proved or
+/// counted so is solved in the whole, or by itself, as by `ModalReanalysis`.
 ///
 /// Parameters
 /// ----------
 /// structure, masses : as for `modes`, with m members, s springs and n nodes
+/// varied : i64[e], numbers of the members that vary, and of springs behind all members
 /// count : of the lowest modes that are wanted, c
 /// dofs : i64[d], along which shapes are shown: six times the node and the direction, 0..5
 /// instructions : one of `instructions()` that samples are solved with; None: the best. Results do
@@ -184,10 +186,11 @@ pub struct ModalBatch {
 #[pymethods]
 impl ModalBatch {
     #[new]
-    #[pyo3(signature = (structure, masses, count, dofs, instructions=None))]
+    #[pyo3(signature = (structure, masses, varied, count, dofs, instructions=None))]
     fn new(
         structure: &Bound<'_, PyDict>,
         masses: &Bound<'_, PyDict>,
+        varied: &Bound<'_, PyAny>,
         count: usize,
         dofs: &Bound<'_, PyAny>,
         instructions: Option<&str>,
@@ -195,8 +198,10 @@ impl ModalBatch {
         let py = structure.py();
         read_structure!(model from structure);
         read_masses!(weights from masses);
-        let dofs = numbers(dofs, "dofs")?;
-        py.detach(|| rga_core::ModalBatch::new(&model, &weights, count, &dofs, instructions))
+        let (varied, dofs) = (numbers(varied, "varied")?, numbers(dofs, "dofs")?);
+        let make =
+            || rga_core::ModalBatch::new(&model, &weights, &varied, count, &dofs, instructions);
+        py.detach(make)
             .map(|core| Self {
                 core,
                 shape: [count, dofs.len()],
@@ -208,8 +213,7 @@ impl ModalBatch {
     ///
     /// Parameters
     /// ----------
-    /// factors : f64[k, m + s], above zero, on the whole stiffness of each member and of each
-    ///     spring. A member whose end connections yield keeps a factor of 1.
+    /// factors : f64[k, e], above zero, on the whole stiffness of each member or spring that varies. A member whose end connections yield keeps a factor of 1.
     /// threads : how many share the rows; the results do not depend on it
     ///
     /// Returns

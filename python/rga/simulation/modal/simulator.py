@@ -125,13 +125,15 @@ class ModalSimulator:
         samples = self._structures.samples(contexts)
         if samples is None:
             return None
-        start, factors, of_row = samples
+        start, factors = samples.start, samples.factors
         found = np.empty((len(factors), len(self.model.modal_sensors)))
         left, count = np.arange(len(factors)), len(self.expected) + BEYOND
         dofs = (6 * self._nodes[:, None] + np.arange(3)).ravel()
         while len(left):
             try:
-                batch = _core.ModalBatch(start.arrays, start.masses, count, dofs)
+                batch = _core.ModalBatch(
+                    start.arrays, start.masses, samples.elements, count, dofs
+                )
                 squares, moving = batch.modes(factors[left])
             except (_core.UnstableStructure, _core.InvalidInput):
                 return None  # a structure by itself tells what is wrong, or has fewer modes
@@ -142,7 +144,7 @@ class ModalSimulator:
             for number in np.flatnonzero(enough):
                 found[left[number]] = self._read(frequencies[number], shapes[number])
             left, count = left[~enough], min(2 * count, MOST)
-        return found, of_row
+        return found, samples.state_of_row
 
     def _read(self, frequencies: FloatArray, shapes: FloatArray) -> FloatArray:
         modes = list(self.expected.values())

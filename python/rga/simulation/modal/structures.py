@@ -1,5 +1,6 @@
 """The structures whose modes are computed, and what the core computes of them."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +16,23 @@ from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.dispatch import APART, Request, variation_under
 from rga.simulation.paths.response import refused
 from rga.simulation.simulator import Simulator
+
+
+@dataclass(frozen=True)
+class ModalSamples:
+    """Structures that differ in stiffnesses of whole members or springs, and in nothing else.
+
+    Attributes:
+        start: one of them, or near them.
+        elements: numbers of members, and of springs behind all members, that vary, int[elements].
+        factors: on their stiffness in `start`, above zero, float[states, elements].
+        state_of_row: int[rows].
+    """
+
+    start: Structure
+    elements: IntArray
+    factors: FloatArray
+    state_of_row: IntArray
 
 
 class ModalStructures:
@@ -49,16 +67,14 @@ class ModalStructures:
             )
         return structures, request.state_of_row
 
-    def samples(self, contexts: Contexts | None) -> tuple[Structure, FloatArray, IntArray] | None:
+    def samples(self, contexts: Contexts | None) -> ModalSamples | None:
         """What varies between rows of contexts, where it is stiffnesses of whole members or springs.
 
         Args:
             contexts: as for `results`.
 
         Returns:
-            A structure; factors above zero on its members, then springs, float[states, elements];
-            the number of each row's state, int[rows]. None where there are few states, or where
-            something else varies: masses, say.
+            None where there are few states, or where something else varies: masses, say.
 
         Raises:
             InputError: as `results`.
@@ -71,11 +87,11 @@ class ModalStructures:
         looked_at = (states.min(axis=0), states.max(axis=0), states[0], states[len(states) // 2])
         if not all(_weigh_alike(varied.start, request.change(state)) for state in looked_at):
             return None
-        count = len(varied.start.arrays["ends"])
-        factors = np.ones((len(states), count + len(varied.start.arrays["spring_stiffness"])))
-        chosen = np.append(varied.members, count + varied.springs)
-        factors[:, chosen] = varied.at(states) / varied.first
-        return (varied.start, factors, request.state_of_row) if (factors > 0).all() else None
+        factors = varied.at(states) / varied.first
+        if not (factors > 0).all():
+            return None
+        elements = np.append(varied.members, len(varied.start.arrays["ends"]) + varied.springs)
+        return ModalSamples(varied.start, elements, factors, request.state_of_row)
 
     def _request(self, contexts: Contexts | None) -> Request:
         given = self._given(contexts)

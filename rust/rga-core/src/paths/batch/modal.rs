@@ -2,12 +2,14 @@
 //!
 //! Samples begin with the modes of the structure (`swinging`) and are solved together, one a lane
 //! of a SIMD vector (`iteration`, on blocks of vectors, `block`, and on what these span,
-//! `projected`). One that is not proved there, or counted otherwise, is solved by itself, as is
-//! every sample of a structure that is too large or too small for that.
+//! `projected`). Where few stiffnesses vary, that is done in a space of few vectors (`reduced`); a
+//! sample that is not proved there, or counted otherwise, is solved in the whole, and by itself if
+//! it is not proved there either, as is every sample of a structure that is too large or too small.
 
 mod block;
 mod iteration;
 mod projected;
+mod reduced;
 mod swinging;
 
 use std::ops::Range;
@@ -27,31 +29,43 @@ use crate::validate::masses::check_masses;
 use crate::validate::structure::check_structure;
 use block::BESIDE;
 use iteration::Iteration;
-use swinging::{Swinging, known_modes};
+use reduced::reduced;
+use swinging::{Swinging, known_modes, start_width, whole};
 
 /// Rows that a thread takes at a time.
 const CHUNK: usize = 32;
 
-/// A structure that swings, of which every stiffness may vary from sample to sample; masses stay.
+/// A structure that swings, of which stiffnesses vary from sample to sample; masses stay.
 pub struct ModalBatch {
     motion: Motion,
     known: RitzPairs,
-    /// Nothing where samples are solved one by one.
-    swinging: Option<Swinging>,
+    /// Ways to solve samples together, the quickest first.
+    ways: Vec<Way>,
+    /// Numbers of the elements that vary: members, then springs behind them.
+    varied: Vec<usize>,
     count: usize,
     dofs: Vec<usize>,
     arch: Arch,
 }
 
+struct Way {
+    swinging: Swinging,
+    /// Weights of the elements that vary.
+    weights: Vec<usize>,
+    /// Vectors of which the unknowns are shares; nothing where they are those of the structure.
+    vectors: Option<Vec<Vec<f64>>>,
+}
+
 impl ModalBatch {
     /// The `count` lowest modes are found, and of their shapes what moves along `dofs`: six times
-    /// the node and the direction.
+    /// the node and the direction. `varied` are numbers of members, and of springs behind them.
     ///
     /// `instructions` names one of `instructions()`; nothing names the best. Results do not depend
     /// on it.
     pub fn new(
         structure: &Structure,
         masses: &Masses,
+        varied: &[usize],
         count: usize,
         dofs: &[usize],
         instructions: Option<&str>,
@@ -63,6 +77,15 @@ impl ModalBatch {
         if let Some(dof) = dofs.iter().find(|dof| **dof >= motion.model.dofs) {
             return Err(Error::invalid(format!("there is no dof {dof}")));
         }
+        let elements = motion.model.members.len() + motion.model.springs.len();
+        if let Some(element) = varied.iter().find(|element| **element >= elements) {
+            return Err(Error::invalid(format!("there is no element {element}")));
+        }
+        let mut once = varied.to_vec();
+        once.sort_unstable();
+        if once.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(Error::invalid("an element is named twice"));
+        }
         let known = lowest(&motion, known_modes(count), 0, Lanczos::new(&motion))?;
         if known.converged < count {
             return Err(Error::invalid(format!(
@@ -70,23 +93,33 @@ impl ModalBatch {
                 known.converged
             )));
         }
-        let Motion {
-            model, reduction, ..
-        } = &motion;
-        let swinging = Swinging::new(model, reduction, motion.mass(), &known, count);
+        let mut ways = Vec::new();
+        if let Some(modes) = start_width(&known, count)
+            && let Some((pencil, vectors)) = reduced(&motion, &known, modes, varied)?
+            && let Some(swinging) = Swinging::new(pencil, count)
+        {
+            ways.push(Way {
+                swinging,
+                weights: (0..varied.len()).collect(),
+                vectors: Some(vectors),
+            });
+        }
+        if let Some(swinging) = whole(&motion, &known).and_then(|all| Swinging::new(all, count)) {
+            ways.push(Way {
+                swinging,
+                weights: varied.to_vec(),
+                vectors: None,
+            });
+        }
         Ok(Self {
             motion,
             known,
-            swinging,
+            ways,
+            varied: varied.to_vec(),
             count,
             dofs: dofs.to_vec(),
             arch,
         })
-    }
-
-    /// Number of members and springs.
-    pub fn elements(&self) -> usize {
-        self.motion.model.members.len() + self.motion.model.springs.len()
     }
 
     /// Numbers of a sample: of each mode the eigenvalue, then its shape along the dofs.
@@ -97,10 +130,11 @@ impl ModalBatch {
     /// Modes of samples, `[rows, modes, 1 + dofs]` in C order: the eigenvalue of each, then its
     /// shape, with a modal mass of one; the largest motion of all dofs is positive.
     ///
-    /// Factors `[rows, members + springs]` multiply the whole stiffness of a member or of a spring.
+    /// Factors `[rows, varied]` multiply the whole stiffness of a member or of a spring.
     pub fn modes(&self, factors: Array<f64>, threads: usize) -> Result<Vec<f64>> {
         let rows = factors.len();
-        factors.check_shape("factors", &[rows, self.elements()])?;
+        factors.check_shape("factors", &[rows, self.varied.len()])?;
+        // A stiffness that is none is another structure.
         for row in 0..rows {
             let stiff = |factor: f64| factor.is_finite() && factor > 0.0;
             factors.check_row("factors", row, "finite and above zero", stiff)?;
@@ -119,11 +153,15 @@ impl ModalBatch {
     }
 
     fn check_yielding(&self, factors: Array<f64>) -> Result<()> {
-        let members = self.motion.model.members.iter().enumerate();
-        for (index, _) in members.filter(|(_, member)| !member.is_proportional()) {
+        let yields = |element: usize| {
+            let member = self.motion.model.members.get(element);
+            member.is_some_and(|member| !member.is_proportional())
+        };
+        let own = self.varied.iter().enumerate();
+        for (index, member) in own.filter(|(_, element)| yields(**element)) {
             if let Some(row) = (0..factors.len()).find(|&row| factors.row(row)[index] != 1.0) {
                 return Err(Error::invalid(format!(
-                    "factors[{row}, {index}] is {}, but the ends of member {index} yield and do \
+                    "factors[{row}, {index}] is {}, but the ends of member {member} yield and do \
                      not scale with it; it must be 1",
                     factors.row(row)[index]
                 )));
@@ -135,7 +173,12 @@ impl ModalBatch {
     /// One sample by itself.
     #[inline(never)]
     fn alone(&self, factors: &[f64], found: &mut [f64]) -> Result<()> {
-        let motion = self.motion.with_factors(factors)?;
+        let model = &self.motion.model;
+        let mut all = vec![1.0; model.members.len() + model.springs.len()];
+        for (&element, factor) in self.varied.iter().zip(factors) {
+            all[element] = *factor;
+        }
+        let motion = self.motion.with_factors(&all)?;
         let modes = modes_of_another(&motion, &self.known, self.count)?;
         let Modes {
             eigenvalues,
@@ -158,37 +201,47 @@ impl ModalBatch {
 
     /// What a lane has come to.
     #[inline(never)]
-    fn read<L: Lanes>(
-        &self,
-        swinging: &Swinging,
-        iteration: &Iteration<L>,
-        lane: usize,
-        found: &mut [f64],
-    ) {
+    fn read<L: Lanes>(&self, way: &Way, iteration: &Iteration<L>, lane: usize, found: &mut [f64]) {
         let Motion {
             model, reduction, ..
         } = &self.motion;
-        let size = swinging.size();
+        let size = way.swinging.size();
         let numbers = L::flat(&iteration.shapes);
         let of_lane = |values: &[L::Numbers], at: usize| L::flat(values)[at * L::COUNT + lane];
-        let mut motion = vec![0.0; size];
+        let mut own = vec![0.0; size];
         let mut shape = vec![0.0; model.dofs];
         let places = found.chunks_exact_mut(1 + self.dofs.len());
         for (vector, place) in places.enumerate() {
             let (group, beside) = (vector / BESIDE, vector % BESIDE);
-            for (value, at) in motion.iter_mut().zip(&swinging.place) {
+            place[0] = of_lane(&iteration.eigenvalues, vector);
+            if self.dofs.is_empty() {
+                continue;
+            }
+            for (value, at) in own.iter_mut().zip(&way.swinging.place) {
                 *value = numbers[((group * size + at) * BESIDE + beside) * L::COUNT + lane];
             }
             shape.fill(0.0);
-            reduction.expand(&motion, &mut shape);
+            match &way.vectors {
+                None => reduction.expand(&own, &mut shape),
+                Some(vectors) => reduction.expand(&sum(&own, vectors), &mut shape),
+            }
             let modal_mass = of_lane(&iteration.modal_masses, vector);
             let scale = sign(&shape, model.arm()) / modal_mass.sqrt();
-            place[0] = of_lane(&iteration.eigenvalues, vector);
             for (value, &dof) in place[1..].iter_mut().zip(&self.dofs) {
                 *value = scale * shape[dof];
             }
         }
     }
+}
+
+fn sum(shares: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
+    let mut found = vec![0.0; vectors.first().map_or(0, Vec::len)];
+    for (share, vector) in shares.iter().zip(vectors) {
+        for (value, part) in found.iter_mut().zip(vector) {
+            *value += share * part;
+        }
+    }
+    found
 }
 
 /// All samples, shared among threads.
@@ -212,17 +265,21 @@ impl WithSimd for Sweep<'_> {
             threads,
         } = self;
         let prepare = || {
-            let swinging = batch.swinging.as_ref();
-            Ok(swinging.map(|swinging| Iteration::new(lanes, swinging)))
+            let ways = batch.ways.iter();
+            let iterations = ways
+                .map(|way| Iteration::new(lanes, &way.swinging))
+                .collect();
+            Ok(Scratch {
+                iterations,
+                given: vec![lanes.splat(0.0); batch.varied.len()],
+            })
         };
-        let work = |iteration: &mut Option<Iteration<Packs<S, 1>>>,
-                    rows: Range<usize>,
-                    results: &mut [f64]| {
+        let work = |scratch: &mut Scratch<Packs<S, 1>>, rows: Range<usize>, results: &mut [f64]| {
             lanes.vectorize(Chunk {
                 lanes,
                 batch,
                 factors,
-                iteration: iteration.as_mut(),
+                scratch,
                 rows,
                 results,
             })
@@ -232,12 +289,20 @@ impl WithSimd for Sweep<'_> {
     }
 }
 
+/// What a thread needs for its samples.
+struct Scratch<'a, L: Lanes> {
+    /// Of each way.
+    iterations: Vec<Iteration<'a, L>>,
+    /// Factors of the samples at hand.
+    given: Vec<L::Numbers>,
+}
+
 /// Samples that a thread takes at a time.
 struct Chunk<'a, 'b, L: Lanes> {
     lanes: L,
     batch: &'a ModalBatch,
     factors: Array<'a, f64>,
-    iteration: Option<&'a mut Iteration<'b, L>>,
+    scratch: &'a mut Scratch<'b, L>,
     rows: Range<usize>,
     results: &'a mut [f64],
 }
@@ -251,23 +316,31 @@ impl<L: Lanes> NullaryFnOnce for Chunk<'_, '_, L> {
             lanes,
             batch,
             factors,
-            mut iteration,
+            scratch,
             rows,
             results,
         } = self;
-        let (width, elements) = (batch.width().max(1), batch.elements());
-        let at_once = if iteration.is_some() { L::COUNT } else { 1 };
+        let Scratch { iterations, given } = scratch;
+        let width = batch.width().max(1);
+        let at_once = if iterations.is_empty() { 1 } else { L::COUNT };
         for from in rows.clone().step_by(at_once) {
             let count = at_once.min(rows.end - from);
             let results = &mut results[(from - rows.start) * width..][..count * width];
-            let mut counted = 0;
-            if let (Some(iteration), Some(swinging)) = (&mut iteration, &batch.swinging) {
-                let weights = &mut iteration.weights[..elements];
-                lanes.gather(weights, factors.values, from, count);
-                counted = iteration.solve(lanes, |iteration, proved| {
+            let (mut counted, all) = (0, (1 << count) - 1);
+            lanes.gather(given, factors.values, from, count);
+            for (iteration, way) in iterations.iter_mut().zip(&batch.ways) {
+                if counted & all == all {
+                    break;
+                }
+                let elements = way.swinging.weights.elements;
+                iteration.weights[..elements].fill(lanes.splat(1.0));
+                for (&weight, factor) in way.weights.iter().zip(given.iter()) {
+                    iteration.weights[weight] = *factor;
+                }
+                counted |= iteration.solve(lanes, |iteration, proved| {
                     for (lane, found) in results.chunks_exact_mut(width).enumerate() {
-                        if proved >> lane & 1 == 1 {
-                            batch.read(swinging, iteration, lane, found);
+                        if proved & !counted & (1 << lane) != 0 {
+                            batch.read(way, iteration, lane, found);
                         }
                     }
                 });

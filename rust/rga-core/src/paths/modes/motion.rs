@@ -58,6 +58,16 @@ impl Motion {
         })
     }
 
+    /// Whether no rotation is held because nothing stiffens it.
+    pub(in crate::paths) fn turns_nowhere_freely(&self) -> bool {
+        self.solver.free_rotations().is_empty()
+    }
+
+    /// K x
+    pub(in crate::paths) fn stiffness_times(&self, x: &[f64]) -> Vec<f64> {
+        self.solver.resisted(x)
+    }
+
     /// M
     pub(in crate::paths) fn mass(&self) -> &LowerTriangle {
         &self.mass

@@ -11,7 +11,7 @@
 //! the found and all others is eliminated from the latter, and what that adds scales each
 //! eigenvalue by that part at most (Ostrowski's theorem, Horn and Johnson, Matrix Analysis, 2013,
 //! theorem 4.5.9). That no other is above s, is counted. What is given are Rayleigh quotients of
-//! A x, element by element, which are nearer still.
+//! A x, which are nearer still: element by element, where K is a sum over these.
 
 use rga_simd::f64::Lanes;
 
@@ -45,6 +45,8 @@ pub(super) struct Iteration<'a, L: Lanes> {
     /// A x of those that are counted, their modal masses and eigenvalues.
     pub shapes: Vec<L::Numbers>,
     pub modal_masses: Vec<L::Numbers>,
+    /// Twice their strain energies.
+    energies: Vec<L::Numbers>,
     pub eigenvalues: Vec<L::Numbers>,
     /// Between the modes that are counted and the others.
     shift: L::Numbers,
@@ -69,6 +71,7 @@ impl<'a, L: Lanes> Iteration<'a, L> {
             projected: Projected::new(lanes, width),
             shapes: vec![zero; groups * size],
             modal_masses: vec![zero; groups],
+            energies: vec![zero; groups],
             eigenvalues: vec![zero; groups],
             shift: zero,
             column: line.clone(),
@@ -85,7 +88,7 @@ impl<'a, L: Lanes> Iteration<'a, L> {
     pub(super) fn solve(&mut self, lanes: L, mut found: impl FnMut(&Self, u64)) -> u64 {
         let (one, mass) = (self.swinging.weights.one(), self.swinging.shifted());
         self.weights[one] = lanes.splat(1.0);
-        self.weights[mass] = lanes.splat(0.0);
+        (self.weights[mass], self.weights[mass + 1]) = (lanes.splat(0.0), lanes.splat(0.0));
         let sound = self.factorise(lanes);
         self.start(lanes);
         let all = (1 << L::COUNT) - 1;
@@ -106,10 +109,24 @@ impl<'a, L: Lanes> Iteration<'a, L> {
             }
         }
         self.weights[mass] = lanes.neg(shift);
+        self.weights[mass + 1] = lanes.neg(self.outside(lanes, shift));
         let cholesky = &mut self.cholesky;
         let below = cholesky.negative_eigenvalues(lanes, &self.weights, COUNTED_PIVOT);
         let right = lanes.equal(below, lanes.splat(self.swinging.kept as f64));
         proved & lanes.bits(lanes.and(right, cholesky.sound))
+    }
+
+    /// The weight of S at a shift; no number where the other motions may have modes below it.
+    #[inline(always)]
+    fn outside(&self, lanes: L, shift: L::Numbers) -> L::Numbers {
+        let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
+        let Some((_, first)) = &self.swinging.outside else {
+            return zero;
+        };
+        let left = lanes.sub(one, lanes.div(shift, lanes.splat(*first)));
+        let lowest = lanes.above(left, zero);
+        let weight = lanes.div(lanes.mul(shift, shift), left);
+        lanes.select(lowest, weight, lanes.splat(f64::NAN))
     }
 
     /// The bits of lanes whose factor may be relied on.
@@ -238,12 +255,25 @@ impl<'a, L: Lanes> Iteration<'a, L> {
         let (vectors, forces) = (&self.vectors[..numbers], &self.forces[..numbers]);
         // x' M x = m, and (A x)' M x = m^2 (1 + r^2).
         product_each(lanes, size, vectors, forces, &mut self.eigenvalues);
-        product_each(lanes, size, &self.shapes, forces, &mut self.modal_masses);
+        product_each(lanes, size, &self.shapes, forces, &mut self.energies);
         let (zero, one, half) = (lanes.splat(0.0), lanes.splat(1.0), lanes.splat(0.5));
         let mut residuals = zero;
-        for (value, product) in self.eigenvalues[..kept].iter().zip(&self.modal_masses) {
+        for (value, product) in self.eigenvalues[..kept].iter().zip(&self.energies) {
             let square = lanes.sub(lanes.div(*product, lanes.mul(*value, *value)), one);
             residuals = lanes.mul_add(lanes.abs(square), *value, residuals);
+        }
+        if let Some((coupling, _)) = &self.swinging.outside {
+            lanes.vectorize(MassTimes {
+                lanes,
+                mass: coupling,
+                x: vectors,
+                product: &mut self.images[..numbers],
+            });
+            let images = &self.images[..numbers];
+            product_each(lanes, size, vectors, images, &mut self.modal_masses);
+            for (value, product) in self.eigenvalues[..kept].iter().zip(&self.modal_masses) {
+                residuals = lanes.add(lanes.div(*product, *value), residuals);
+            }
         }
         let (inside, outside) = (self.projected.values[kept - 1], self.projected.values[kept]);
         let between = lanes.mul(half, lanes.add(inside, outside));
@@ -269,13 +299,17 @@ impl<'a, L: Lanes> Iteration<'a, L> {
         let forces = &self.forces[..numbers];
         product_each(lanes, size, &self.shapes, forces, &mut self.modal_masses);
         for vector in 0..kept {
+            let Some(stiffness) = &self.swinging.stiffness else {
+                let (energy, mass) = (self.energies[vector], self.modal_masses[vector]);
+                self.eigenvalues[vector] = lanes.div(energy, mass);
+                continue;
+            };
             let (group, beside) = (vector / BESIDE, vector % BESIDE);
             let group = &self.shapes[group * BESIDE * size..][..BESIDE * size];
             for (place, own) in self.column.iter_mut().zip(group.chunks_exact(BESIDE)) {
                 *place = own[beside];
             }
             self.beside.fill(lanes.splat(0.0));
-            let stiffness = &self.swinging.stiffness;
             stiffness.add(lanes, &self.weights, &self.column, &mut self.beside);
             let mut energy = lanes.splat(0.0);
             for (motion, force) in self.column.iter().zip(&self.beside) {
