@@ -131,9 +131,7 @@ class ModalSimulator:
         dofs = (6 * self._nodes[:, None] + np.arange(3)).ravel()
         while len(left):
             try:
-                batch = _core.ModalBatch(
-                    start.arrays, start.masses, samples.elements, count, dofs
-                )
+                batch = _core.ModalBatch(start.arrays, start.masses, samples.elements, count, dofs)
                 squares, moving = batch.modes(factors[left])
             except (_core.UnstableStructure, _core.InvalidInput):
                 return None  # a structure by itself tells what is wrong, or has fewer modes

@@ -68,7 +68,7 @@ class ModalStructures:
         return structures, request.state_of_row
 
     def samples(self, contexts: Contexts | None) -> ModalSamples | None:
-        """What varies between rows of contexts, where it is stiffnesses of whole members or springs.
+        """What varies between rows, where it is stiffnesses of whole members or springs.
 
         Args:
             contexts: as for `results`.
