@@ -134,7 +134,8 @@ def _rates(
     one_by_one = [alone, *(one for one in peers.values() if one is not None)]
     found = [together(given), *(np.array([one(s) for s in factors]) for one in one_by_one)]
     apart = max(agree(case, one, found[-1], AGREEMENT) for one in found[:-1])
-    tasks = [partial(together, given), *(partial(_each, one, factors) for one in one_by_one)]
+    tasks: list[Callable[[], object]] = [partial(together, given)]
+    tasks += [partial(_each, one, factors) for one in one_by_one]
     taken = shortest(tasks, setting.seconds * len(tasks))
     rates = dict(zip([together, *one_by_one], (len(factors) / one for one in taken), strict=True))
     ours = (("samples", together, least), ("samples, one at a time", alone, LEAST_ALONE))

@@ -168,7 +168,8 @@ class ModalSimulator:
     @property
     def _reach(self) -> float:
         """Up to where the expected modes may be [Hz]."""
-        return max(one.near * np.exp(REACH * one.within) for one in self.expected.values())
+        each = (one.near * np.exp(REACH * one.within) for one in self.expected.values())
+        return float(max(each))
 
     def _computed(self, structure: Structure) -> tuple[FloatArray, FloatArray]:
         """Modes up to where the expected ones may be, and some beyond."""

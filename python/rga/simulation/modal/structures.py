@@ -151,11 +151,8 @@ def _swinging(model: Model) -> dict[str, Effect]:
 
 def _weigh_alike(one: Structure, other: Structure) -> bool:
     # Read by name they would be copied.
-    pairs = [
-        (dict.__getitem__(by_name(each), name) for each in (one.masses, other.masses))
-        for name in by_name(one.masses)
-    ]
-    return all(np.array_equal(*pair) for pair in pairs)
+    here, there = (list(dict.values(by_name(each.masses))) for each in (one, other))
+    return all(map(np.array_equal, here, there))
 
 
 def computed_modes(
