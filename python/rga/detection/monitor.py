@@ -97,7 +97,10 @@ class SyncMonitor:
         reference = Reference.learn(rows)
         peaks, scores = watched(reference, rows)
         noise = StreamNoise.like(
-            rows.shape[1], memory_of(reference.weights), long_run_variance(scores)
+            rows.shape[1],
+            memory_of(reference.weights),
+            long_run_variance(scores),
+            float(np.isnan(rows).mean()),
         )
         simulated = calibration(noise, _rounded(len(rows)), _arl0(arl0), as_seed(seed))
         thresholds = simulated.beside(peaks, len(rows), arl0)

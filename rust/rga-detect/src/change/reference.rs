@@ -6,6 +6,7 @@
 
 mod autoregression;
 mod decorrelation;
+mod gaps;
 mod normal_scores;
 
 use rga_simd::Array;
@@ -14,6 +15,7 @@ use rga_simd::f32::{Lanes, SIXTEEN, sixteens};
 use crate::change::{BLOCK_ROWS, Block};
 use crate::refusal::Refusal;
 use autoregression::any_missing;
+use gaps::Gaps;
 
 /// Scores are never beyond this: one reading alone says no more.
 pub(super) const LARGEST_SCORE: f32 = 6.0;
@@ -274,7 +276,13 @@ impl Reference {
     ) {
         self.bend::<L, N, GAPS>(lanes, &mut work.scores, first);
         if !self.derived.columns.is_empty() {
-            self.mix::<L, N, GAPS>(lanes, &mut work.scores, &mut work.mixed, first);
+            self.mix::<L, N, GAPS>(
+                lanes,
+                &mut work.scores,
+                &mut work.mixed,
+                first,
+                &mut work.gaps,
+            );
         }
     }
 }
@@ -302,6 +310,7 @@ pub(crate) struct Work {
     /// NaN behind the last sensor.
     pub scores: Vec<Block>,
     mixed: Vec<Block>,
+    gaps: Gaps,
 }
 
 impl Work {
@@ -315,6 +324,7 @@ impl Work {
             expected,
             scores: vec![[[f32::NAN; _]; _]; sixteens(sensors)],
             mixed: vec![[[0.0; _]; _]; sixteens(sensors)],
+            gaps: Gaps::default(),
         }
     }
 }
