@@ -231,9 +231,10 @@ class CalibrationNoise:
 
     def with_gaps(self, rows: FloatArray) -> FloatArray:
         """Rows, float[n, sensors], of which readings are missing at random."""
-        if self._noise.missing:
-            rows[self._generator.random(rows.shape) < self._noise.missing] = np.nan
-        return rows
+        if not self._noise.missing:
+            return rows
+        there = self._generator.random(rows.shape) >= self._noise.missing
+        return np.where(there, rows, np.nan)
 
     def parts(self, count: int) -> tuple[FloatArray, FloatArray]:
         """What memory explains of the next rows, and slow noise, float[count, sensors] each."""

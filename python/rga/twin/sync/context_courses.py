@@ -85,10 +85,10 @@ def without_courses(columns: FloatArray, readings: FloatArray, baseline: int) ->
         float[rows, sensors]; NaN as well for all of a sensor that has fewer readings there than two
         for each column, and where what was fitted is hardly known.
 
-    >>> columns = np.column_stack([np.ones(6), [0.0, 1.0, 2.0, 3.0, 1.0, np.nan]])
-    >>> readings = np.array([[1.0], [3.0], [5.0], [7.0], [4.0], [4.0]])
+    >>> columns = np.column_stack([np.ones(6), [0.0, 0.0, 1.0, 1.0, 0.5, np.nan]])
+    >>> readings = np.array([[1.0], [3.0], [5.0], [7.0], [5.0], [4.0]])
     >>> without_courses(columns, readings, 4).round(3).ravel().tolist()
-    [0.0, 0.0, -0.0, -0.0, 0.877, nan]
+    [-1.414, 1.414, -1.414, 1.414, 0.894, nan]
     """
     found = np.full_like(readings, np.nan)
     judged = np.isfinite(columns).all(axis=1)
