@@ -7,6 +7,7 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
 from rga.errors import InputError
+from rga.quantities import counted
 
 #: readings for each number that is fitted, at least
 EACH = 30
@@ -45,7 +46,7 @@ class ContextCourses:
             if len(known) and np.ptp(known) > 0:
                 ranges[name] = (float(known.min()), float(known.max()))
         if readings < EACH * (1 + len(ranges)):
-            beside = f" beside {len(ranges)} contexts" if ranges else ""
+            beside = f" beside {counted(len(ranges), 'context')}" if ranges else ""
             raise InputError(
                 f"the baseline has {readings} readings of a mode{beside}, and the monitor needs "
                 f"{EACH * (1 + len(ranges))}",

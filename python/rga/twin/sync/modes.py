@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.arrays import FloatArray
+from rga.arrays import BoolArray, FloatArray
 from rga.detection import Alarm, SyncMonitor
 from rga.errors import InputError
 from rga.model.schema import Model
@@ -94,7 +94,8 @@ def watch_modes(
     monitor = SyncMonitor(left[:baseline], arl0=arl0, seed=seed, names=modes, fitted=courses.fitted)
     monitor.update_many(left[baseline:])
     time = tuple(record.time_label(float(one)) for one in named.time)
-    alarm = None if monitor.alarm is None else _out_of_sync(monitor.alarm, baseline, modes, time)
+    raised = monitor.alarm
+    alarm = None if raised is None else _out_of_sync(raised, left[baseline:], modes, time)
     unwatched = {modes[one]: why for one, why in monitor.unwatched.items()}
     told = [f"mode {name} is not watched: {why}" for name, why in unwatched.items()]
     told += _left_out(len(named.doubtful), outside(columns), int((named.mode < 0).sum()), courses)
@@ -102,23 +103,32 @@ def watch_modes(
 
 
 def _out_of_sync(
-    alarm: Alarm, baseline: int, modes: tuple[str, ...], time: tuple[str | float, ...]
+    alarm: Alarm, left: FloatArray, modes: tuple[str, ...], time: tuple[str | float, ...]
 ) -> OutOfSync:
-    """An alarm in windows of the record, with what has become of the frequencies."""
-    names = tuple(modes[one] for one in alarm.sensors)
-    changes = [
-        f"{name} scatters {change:.2g} times as much"
-        if alarm.kind == "variance"
-        else f"{name} {100 * np.expm1(change):+.2g} %"
-        for name, change in zip(names, alarm.change, strict=True)
-    ]
+    """An alarm in windows of the record, with what has become of the frequencies.
+
+    Args:
+        alarm: by the windows behind the baseline.
+        left: of these, float[windows, modes].
+        modes: their names.
+        time: of all windows.
+    """
+    baseline, changes = len(time) - len(left), []
+    for mode, change in zip(alarm.sensors, alarm.change, strict=True):
+        if alarm.kind == "variance":
+            changes.append(f"{modes[mode]} scatters {change:.2g} times as much")
+            continue
+        # The monitor cuts what is larger than it has seen; frequencies themselves do not.
+        by = np.nanmedian(left[alarm.since :, mode]) if alarm.kind == "step" else change
+        changes.append(f"{modes[mode]} {100 * np.expm1(by):+.2g} %")
     since = baseline + alarm.since
     words = f"out of sync: {alarm.looks} since {time[since]}: {listed(changes)}"
-    return OutOfSync(baseline + alarm.row, since, names, words)
+    sensors = tuple(modes[one] for one in alarm.sensors)
+    return OutOfSync(baseline + alarm.row, since, sensors, words)
 
 
 def _left_out(
-    doubtful: int, outside: np.ndarray, unnamed: int, courses: ContextCourses
+    doubtful: int, outside: BoolArray, unnamed: int, courses: ContextCourses
 ) -> list[str]:
     told = []
     if doubtful:
