@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from independent.modal_bridge import Hidden, measured
 from rga.errors import InputError
@@ -135,3 +136,14 @@ def test_what_is_left_has_one_variance_in_the_baseline_and_behind() -> None:
         behind.append(np.nanmean(left[40:] ** 2))
     assert abs(np.mean(before) - 1.0) < 0.05
     assert abs(np.mean(behind) - 1.0) < 0.06
+
+
+def test_any_number_of_threads_gives_the_same_bits() -> None:
+    model, record = recorded(11, Hidden(stiffness={"bottom bracing": 0.95}, onset=ONSET))
+    found = []
+    for threads in (1, 2):
+        with threadpool_limits(threads):
+            found.append(watch_modes(model, record, BASELINE))
+    assert found[0].left.tobytes() == found[1].left.tobytes()
+    assert found[0].alarm is not None
+    assert found[0].alarm == found[1].alarm

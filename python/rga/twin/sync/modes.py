@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from rga.arrays import BoolArray, FloatArray
 from rga.detection import Alarm, SyncMonitor
