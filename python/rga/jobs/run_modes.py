@@ -21,7 +21,7 @@ USED = {"calibration_rows", "arl0", "criteria"}
 
 
 @dataclass(frozen=True)
-class ModalOutcome:
+class ModalRun:
     """What a run on a modal record ended with.
 
     Attributes:
@@ -42,7 +42,7 @@ def run_modes(
     seed: int = 0,
     progress: Progress | None = None,
     watch: Callable[[WatchedModes], None] | None = None,
-) -> ModalOutcome:
+) -> ModalRun:
     """Watch the natural frequencies of a modal record, diagnose the whole of it, and report.
 
     The first windows say what is usual, as many as `calibration_rows` says: a third of the record
@@ -84,4 +84,4 @@ def run_modes(
     )
     findings.warnings.extend(watched.told)
     write_findings(findings, directory)
-    return ModalOutcome(findings, watched)
+    return ModalRun(findings, watched)
