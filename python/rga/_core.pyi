@@ -25,6 +25,7 @@ __all__ = [
     "UnstableSample",
     "UnstableStructure",
     "count_terms",
+    "innovations",
     "instructions",
     "modal_energies",
     "modes",

@@ -92,8 +92,10 @@ def watch_modes(
     columns = courses.columns(contexts, windows)
     left = without_courses(columns, log_f, baseline)
     modes = tuple(simulator.expected)
-    monitor = SyncMonitor(left[:baseline], arl0=arl0, seed=seed, names=modes, fitted=courses.fitted)
-    monitor.update_many(left[baseline:])
+    learned = left[:baseline]
+    with threadpool_limits(1):  # the same bits, however many there are
+        monitor = SyncMonitor(learned, arl0=arl0, seed=seed, names=modes, fitted=courses.fitted)
+        monitor.update_many(left[baseline:])
     time = tuple(record.time_label(float(one)) for one in named.time)
     raised = monitor.alarm
     alarm = None if raised is None else _out_of_sync(raised, left[baseline:], modes, time)

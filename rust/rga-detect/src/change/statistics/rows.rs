@@ -58,9 +58,11 @@ impl Banks {
         }
         let (mut alike, squares) = (lanes.sums(totals.alike), lanes.sums(totals.squares));
         if GAPS {
-            for (alike, lengths) in alike.iter_mut().zip(totals.lengths) {
+            for (row, lengths) in totals.lengths.into_iter().enumerate() {
                 // What is there of the signature has norm 1 again.
-                *alike /= lanes.sum(lengths).sqrt().max(f32::MIN_POSITIVE);
+                if counts[row] < self.sensors as f32 {
+                    alike[row] /= lanes.sum(lengths).sqrt().max(f32::MIN_POSITIVE);
+                }
             }
         }
         let mut sums = [[0.0; SUMS]; N];
