@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rga.jobs.batch import diagnose_many
     from rga.jobs.live import LiveTwin, live
     from rga.jobs.run import run
+    from rga.jobs.run_modes import run_modes
     from rga.jobs.worker import Worker
     from rga.model import Effect, Model, load_model
     from rga.outputs import write_findings
@@ -69,6 +70,7 @@ _HOMES = {
     "plot_record": "rga.drawing.charts",
     "results": "rga.simulation",
     "run": "rga.jobs.run",
+    "run_modes": "rga.jobs.run_modes",
     "write_findings": "rga.outputs",
 }
 
@@ -110,6 +112,7 @@ __all__ = [
     "plot_results",
     "results",
     "run",
+    "run_modes",
     "write_findings",
 ]
 

@@ -26,6 +26,7 @@ __all__ = [
     "UnstableSample",
     "UnstableStructure",
     "count_terms",
+    "innovations",
     "instructions",
     "modal_energies",
     "modes",
@@ -402,3 +403,13 @@ def count_terms(
 
 def instructions() -> list[str]:
     """Instruction sets that `Refactored` can solve samples with here, the best first."""
+
+def innovations(
+    deviations: NDArray[np.float64], weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """What deviations differ by from what those before let expect, to one variance.
+
+    float[rows, sensors] from float[rows, sensors], NaN where missing, and weights of earlier
+    deviations, the latest first, float[order, sensors]. Behind a gap less is known beforehand, and
+    the difference is drawn in by as much.
+    """

@@ -78,6 +78,14 @@ RecordFilesIfAny = Annotated[
         help="Record: a logger's file, several in time, or a folder with import.toml.",
     ),
 ]
+ModalFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--modal",
+        metavar="FILE",
+        help="Natural frequencies and mode shapes in windows of time, beside a record or alone.",
+    ),
+]
 MappingFile = Annotated[
     Path | None,
     typer.Option(

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rga import _core
 from rga.arrays import FloatArray
-from rga.detection.baseline.baseline_model import Reference, after_prediction
+from rga.detection.baseline.baseline_model import Reference
 from rga.detection.baseline.decorrelation import repeating
 from rga.detection.baseline.stationarity import changed
 from rga.detection.thresholds import MEMORIES, WITHIN, TailModel, memory_of
@@ -43,7 +44,7 @@ def assumption_warnings(
         found.append(
             f"{named(same)} mostly one value: with steps so coarse false alarms may come more often"
         )
-    innovations = after_prediction(baseline - reference.level, reference.weights)
+    innovations = _core.innovations(baseline - reference.level, reference.weights)
     copies = [names[one] for one in repeating(reference.normal_scores(innovations))]
     if copies:
         found.append(

@@ -12,7 +12,7 @@ from rga import _core
 from rga.arrays import FloatArray
 from rga.detection.alarm_explanation import Alarm, explain
 from rga.detection.assumption_checks import assumption_warnings
-from rga.detection.baseline.baseline_model import Reference, unwatched
+from rga.detection.baseline.baseline_model import FEWEST, Reference, unwatched
 from rga.detection.baseline.slow_noise import long_run_variance
 from rga.detection.baseline.stationarity import watched
 from rga.detection.rows import row as row_of
@@ -58,11 +58,13 @@ class SyncMonitor:
             `rows_between` counts them from alarms per month.
         seed: of the simulation of thresholds.
         names: of the sensors, by which warnings call them; None: by their numbers.
+        fitted: numbers that were fitted to each sensor of the baseline beforehand, such as what
+            temperature does to it: a baseline tells the less of each the more there are.
 
     Raises:
         InputError: the baseline is no table of numbers, has a number of names that is not that of
             its sensors, or no sensor with 30 readings that are not all alike; a number beyond 1e60
-            in size; `arl0` below 100 or above 1e12; a seed that is none.
+            in size; `arl0` below 100 or above 1e12; a seed that is none; `fitted` below 0.
 
     Examples:
         >>> import numpy as np
@@ -81,6 +83,7 @@ class SyncMonitor:
         arl0: float = 10_000.0,
         seed: int = 0,
         names: Sequence[str] | None = None,
+        fitted: int = 0,
     ) -> None:
         given = table(baseline, "the baseline")
         within(given, 0, "the baseline")
@@ -88,6 +91,8 @@ class SyncMonitor:
         if len(called) != given.shape[1]:
             what = f"{len(called)} names of {given.shape[1]} sensors"
             raise InputError(what, "names", "give one for each column of the baseline")
+        if not (isinstance(fitted, int) and fitted >= 0):
+            raise InputError(f"fitted is {fitted!r}", "fitted", "give a whole number from 0 on")
         self._unwatched = unwatched(given)
         self._watched = np.array([one not in self._unwatched for one in range(given.shape[1])])
         if not self._watched.any():
@@ -97,9 +102,13 @@ class SyncMonitor:
         reference = Reference.learn(rows)
         peaks, scores = watched(reference, rows)
         noise = StreamNoise.like(
-            rows.shape[1], memory_of(reference.weights), long_run_variance(scores)
+            rows.shape[1],
+            memory_of(reference.weights),
+            long_run_variance(scores),
+            float(np.isnan(rows).mean()),
         )
-        simulated = calibration(noise, _rounded(len(rows)), _arl0(arl0), as_seed(seed))
+        telling = max(len(rows) / (1 + fitted), FEWEST / (1.0 - noise.missing))
+        simulated = calibration(noise, _rounded(telling), _arl0(arl0), as_seed(seed))
         thresholds = simulated.beside(peaks, len(rows), arl0)
         self._begin(reference, thresholds, arl0, seed)
         own = [called[column] for column in np.flatnonzero(self._watched).tolist()]
@@ -286,6 +295,6 @@ def _arl0(value: float) -> float:
     return float(value)
 
 
-def _rounded(rows: int) -> int:
+def _rounded(rows: float) -> int:
     """Down to lengths that thresholds are simulated for: a shorter baseline says less."""
     return int(np.ceil(LENGTHS ** np.floor(np.log(rows) / np.log(LENGTHS))))

@@ -3,7 +3,8 @@
 What a reference makes of readings is standard normal whatever the readings were like, so that
 streams of normal noise, with as much memory and slow noise as the readings have, stand for all.
 Each is watched by statistics whose reference was learned from a baseline of its own, of the length
-of the user's: what a reference does not know well is in the thresholds.
+of the user's: what a reference does not know well is in the thresholds. As many of its readings are
+missing as of the user's: then fewer of them tell what is usual, and each row has fewer to judge.
 """
 
 from dataclasses import dataclass
@@ -36,6 +37,10 @@ WITHIN = 0.05
 #: and the part by which those are larger at most that they stand for
 LONG_RUNS = (1.0, 1.25, 1.5, 2.0, 3.0, 5.0)
 ABOUT = 0.08
+#: shares of missing readings for which streams are simulated; the next larger stands for a share
+#: that is larger by so much
+GAPS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+BESIDE = 0.05
 
 #: how often a value as large is expected in a stream that hardly has it by chance
 HARDLY = 0.05
@@ -91,18 +96,28 @@ class StreamNoise(NamedTuple):
         sensors: in a row.
         memory: correlation of a reading with the one before.
         long_run: variance that sums have beyond that memory, over that without slow noise.
+        missing: share of the readings.
     """
 
     sensors: int
     memory: float = 0.0
     long_run: float = 1.0
+    missing: float = 0.0
 
     @classmethod
-    def like(cls, sensors: int, memory: float, long_run: float) -> "StreamNoise":
+    def like(
+        cls, sensors: int, memory: float, long_run: float, missing: float = 0.0
+    ) -> "StreamNoise":
         """That which streams are simulated with for readings of such noise."""
         nearest = (one for one in MEMORIES if memory <= one + WITHIN)
         slow = (one for one in LONG_RUNS if long_run <= one * (1.0 + ABOUT))
-        return cls(sensors, next(nearest, MEMORIES[-1]), next(slow, LONG_RUNS[-1]))
+        gaps = (one for one in GAPS if missing <= one + BESIDE)
+        return cls(
+            sensors,
+            next(nearest, MEMORIES[-1]),
+            next(slow, LONG_RUNS[-1]),
+            next(gaps, GAPS[-1]),
+        )
 
 
 @lru_cache(maxsize=64)
@@ -181,6 +196,7 @@ def simulated_peaks(
     else:
         # A memory that had learned of slow noise as well would leave less of it than was found.
         fast, slow = draw.parts(baseline_rows)
+        fast = draw.with_gaps(fast)
         reference = Reference.learn(fast + slow, predictors(fast - medians(fast)))
     statistics = reference.statistics(np.full(len(STATISTICS), np.inf), 0)
     peaks = np.empty((BLOCKS, len(STATISTICS)))
@@ -209,9 +225,16 @@ class CalibrationNoise:
             self._steps = self._size * generator.standard_normal(shape)
 
     def rows(self, count: int) -> FloatArray:
-        """The next rows, float[count, sensors]."""
+        """The next rows, float[count, sensors], NaN where missing."""
         fast, slow = self.parts(count)
-        return fast + slow
+        return self.with_gaps(fast + slow)
+
+    def with_gaps(self, rows: FloatArray) -> FloatArray:
+        """Rows, float[n, sensors], of which readings are missing at random."""
+        if not self._noise.missing:
+            return rows
+        there = self._generator.random(rows.shape) >= self._noise.missing
+        return np.where(there, rows, np.nan)
 
     def parts(self, count: int) -> tuple[FloatArray, FloatArray]:
         """What memory explains of the next rows, and slow noise, float[count, sensors] each."""

@@ -20,7 +20,7 @@ use recent_scores::Recent;
 use reference::Work;
 use statistics::{Banks, Found};
 
-pub use reference::{Reference, ReferenceArrays};
+pub use reference::{Reference, ReferenceArrays, innovations};
 pub use statistics::STATISTICS;
 
 /// Rows of a block.

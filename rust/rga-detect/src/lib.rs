@@ -11,6 +11,6 @@ mod window;
 
 pub use rga_simd::{Array, UnknownInstructions, instructions};
 
-pub use change::{Alarm, ChangeStatistics, Reference, ReferenceArrays, STATISTICS};
+pub use change::{Alarm, ChangeStatistics, Reference, ReferenceArrays, STATISTICS, innovations};
 pub use refusal::Refusal;
 pub use window::{GaussianWindow, WindowRule};

@@ -105,6 +105,28 @@ impl ChangeStatistics {
     }
 }
 
+/// What readings differ by from what those before let expect, to one variance whatever is missing.
+#[pyfunction]
+pub(crate) fn innovations<'py>(
+    deviations: &Bound<'py, PyAny>,
+    weights: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let py = deviations.py();
+    let rows = Held::<f64>::new(deviations, "deviations")?;
+    let held = Held::<f64>::new(weights, "weights")?;
+    let (rows, weights) = (rows.view(), held.view());
+    let [count, sensors] = rows.shape else {
+        let remedy = "their shape must be [n, sensors]";
+        return Err(InputError::new_err(("another shape", "deviations", remedy)));
+    };
+    if weights.shape != [weights.len(), *sensors] {
+        let remedy = "their shape must be [order, sensors]";
+        return Err(InputError::new_err(("another shape", "weights", remedy)));
+    }
+    let found = py.detach(|| rga_detect::innovations(rows.values, weights.values, *sensors));
+    PyArray1::from_vec(py, found).reshape([*count, *sensors])
+}
+
 fn refused(refusal: Refusal) -> PyErr {
     InputError::new_err((refusal.what, refusal.place, refusal.remedy))
 }

@@ -45,6 +45,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<reanalysis::Loaded>()?;
     module.add_class::<reanalysis::Reanalysis>()?;
     module.add_class::<reanalysis::StiffnessDifference>()?;
+    module.add_function(wrap_pyfunction!(change_statistics::innovations, module)?)?;
     module.add_function(wrap_pyfunction!(functions::count_terms, module)?)?;
     module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
     module.add_function(wrap_pyfunction!(modes::modal_energies, module)?)?;

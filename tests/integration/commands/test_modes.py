@@ -11,7 +11,7 @@ import pytest
 
 import rga as package
 from independent.mixed_bridge import mixed
-from independent.modal_bridge import Hidden
+from independent.modal_bridge import Hidden, measured
 from rga.model.io import model_content, write_model
 from rga.records.modal.record import ModalRecord
 
@@ -136,3 +136,49 @@ def test_nothing_to_diagnose_is_refused(
     done = rga("diagnose", mast, "-o", tmp_path / "found")
     assert done.code == 2
     assert "there is nothing to compare the model with" in done.err
+
+
+@pytest.mark.parametrize("onset", [90, 120])
+def test_modes_are_watched_and_diagnosed(
+    rga: Callable[..., Any], tmp_path: Path, onset: int
+) -> None:
+    """A change at the ninetieth window of 120, and none."""
+    hidden = Hidden(stiffness={"bottom bracing": 0.7}, onset=onset)
+    model, record = measured(2, hidden, modes=4, windows=120)
+    write_model(model, tmp_path / "model.json")
+    (tmp_path / "modes.csv").write_text(written_modes(record))
+    (tmp_path / "settings.toml").write_text("calibration_rows = 70\narl0 = 5000\n")
+    files = tmp_path / "model.json", "--modal", tmp_path / "modes.csv"
+    chosen = "--settings", tmp_path / "settings.toml"
+    done = rga("run", *files, *chosen, "-o", tmp_path / "out")
+    assert done.code == 0, done.err
+    assert "window 69  calibration: 70 windows say what is usual" in done.out
+    findings = json.loads((tmp_path / "out" / "findings.json").read_text())
+    told = [one for one in findings["warnings"] if one.startswith("out of sync: a step since")]
+    if onset == 120:
+        assert "no alarm" in done.out
+        assert not told
+        assert findings["verdict"] == "nothing_wrong"
+    else:
+        assert "alarm: out of sync: a step since" in done.out
+        assert len(told) == 1
+        assert findings["verdict"] != "nothing_wrong"
+    assert "<h2>Modes</h2>" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_what_cannot_be_watched_is_refused(
+    rga: Callable[..., Any], mast: Path, tmp_path: Path
+) -> None:
+    modes = tmp_path / "modes.csv"
+    modes.write_text("time,f\n" + "".join(f"{at},2.0\n" for at in range(20)))
+    out = "-o", tmp_path / "out"
+    for arguments, words in (
+        ((), "there is nothing to watch"),
+        ((modes, "--modal", modes), "one record is watched in a run"),
+        (("--modal", modes, "--level", "B"), "setting 'level' says nothing of modes"),
+        (("--modal", modes, "--import", modes), "--import says nothing of modes"),
+        (("--modal", modes), "the monitor needs 30"),
+    ):
+        done = rga("run", mast, *arguments, *out)
+        assert done.code == 2, arguments
+        assert words in done.err

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.signal import lfilter
 from scipy.stats import binomtest, poisson
 
@@ -77,3 +78,33 @@ def test_what_sensors_miss_together_in_the_baseline_is_usual() -> None:
                 alarms += 1
                 monitor.begin_again()
     assert alarms <= 4 * draws
+
+
+def usual(missing: str, draw: int) -> NDArray[np.float64]:
+    """Rows of five sensors that go together, with a memory, of which readings are missing."""
+    generator = np.random.default_rng(900 + draw)
+    rows, sensors = 300 + 500, 5
+    steps = generator.standard_normal((rows, sensors)) + generator.standard_normal((rows, 1))
+    readings = lfilter([1.0], [1.0, -0.4], steps, axis=0)
+    gone = generator.random(readings.shape) < {"none": 0.0, "few": 0.12}.get(missing, 0.4)
+    if missing == "cold":
+        # What is missing goes with the temperature of the day, as modes do in frost.
+        day = np.sin(2.0 * np.pi * np.arange(rows) / 24.0)[:, None]
+        gone = generator.random(readings.shape) < 0.4 - 0.35 * day
+    if missing == "never whole":
+        gone[np.arange(rows), generator.integers(0, sensors, rows)] = True
+        assert gone.any(axis=1).all()
+    return np.where(gone, MISSING, readings)
+
+
+@pytest.mark.parametrize("missing", ["none", "few", "many", "cold", "never whole"])
+def test_false_alarms_are_no_more_frequent_whatever_is_missing(missing: str) -> None:
+    """Over `arl0` rows the chance of one is 1 - 1/e."""
+    arl0, draws, alarms = 500, 60, 0
+    for draw in range(draws):
+        rows = usual(missing, draw)
+        monitor = SyncMonitor(rows[:300], arl0=arl0)
+        alarms += bool(monitor.update_many(rows[300:])[-1])
+    interval = binomtest(alarms, draws).proportion_ci(0.95)
+    assert interval.low < 1.0 - np.exp(-1.0)
+    assert interval.high > 0.3

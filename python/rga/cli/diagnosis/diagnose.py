@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -10,6 +10,7 @@ from rga.cli.options import (
     CriteriaFile,
     JsonTarget,
     MappingFile,
+    ModalFile,
     ModelFile,
     OutputDirectory,
     PrintPdf,
@@ -22,15 +23,6 @@ if TYPE_CHECKING:
     from rga.findings import Findings
 
     Progress = Callable[[str, float], None]
-
-ModalFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--modal",
-        metavar="FILE",
-        help="Natural frequencies and mode shapes in windows of time, beside a record or alone.",
-    ),
-]
 
 
 def diagnose(

@@ -8,19 +8,23 @@ import typer
 from rga.cli.options import (
     JsonTarget,
     MappingFile,
+    ModalFile,
     ModelFile,
     OutputDirectory,
     PrintPdf,
-    RecordFiles,
+    RecordFilesIfAny,
     Seed,
 )
+from rga.errors import InputError
 
 if TYPE_CHECKING:
     from rga.cli.progress import Shown
+    from rga.findings import Findings
     from rga.model import Model
     from rga.records import Record
-    from rga.twin import Event
+    from rga.twin import Event, Settings
     from rga.twin.runner import Running
+    from rga.twin.sync.modes import WatchedModes
 
 Level = Annotated[
     str | None,
@@ -45,8 +49,9 @@ RepositoryUrl = Annotated[
 
 def run(
     model: ModelFile,
-    record: RecordFiles,
     output: OutputDirectory,
+    record: RecordFilesIfAny = None,
+    modal: ModalFile = None,
     mapping: MappingFile = None,
     seed: Seed = 0,
     level: Level = None,
@@ -58,52 +63,128 @@ def run(
     """Calibrate a twin, watch its gap, recalibrate, diagnose and report.
 
     A run that was interrupted goes on where it stood; one that had ended is not done again.
+    With --modal in place of a record, natural frequencies are watched, and diagnosed at the end.
     """
     from rga.cli.operation.settings import read_settings
-    from rga.cli.output import check_targets, write_json
-    from rga.cli.progress import shown_progress
-    from rga.cli.reading import read_record
+    from rga.cli.output import write_json
     from rga.model import load_model
 
-    structure = load_model(model)
-    measured = read_record(record, structure, mapping)
-    chosen = read_settings(settings, level)
-    check_targets(json)
-    for warning in _replaced(output, structure, measured, seed):
-        typer.echo(f"warning: {warning}", err=True)
-    # Not needed before the input is known to be good, and slow to import.
-    from rga.jobs.run import run as run_twin
-
-    quiet = json == "-"
-    with shown_progress() as progress:
-        outcome = run_twin(
-            structure,
-            measured,
-            output,
-            settings=chosen,
-            seed=seed,
-            repository=repository,
-            progress=progress,
-            watch=None if quiet else _News(progress),
+    if (modal is None) == (not record):
+        raise InputError(
+            "one record is watched in a run" if record else "there is nothing to watch",
+            "rga run",
+            "give a RECORD or --modal FILE; `rga diagnose` takes both together",
         )
-    findings = outcome.findings
-    for warning in findings.warnings:
-        if warning not in measured.warnings:
-            typer.echo(f"warning: {warning}", err=True)
+    structure = load_model(model)
+    chosen = read_settings(settings, level)
+    if modal is not None:
+        for option, given in (("--import", mapping), ("--repository", repository)):
+            if given is not None:
+                raise InputError(f"{option} says nothing of modes", option, "leave it out")
+        findings = _modes_run(structure, modal, output, chosen, seed, json)
+    else:
+        findings = _twin_run(
+            structure, record or [], mapping, output, chosen, seed, repository, json
+        )
     if json is not None:
         write_json(findings.model_dump(mode="json"), json)
     if pdf:
         from rga.report.pdf import write_pdf
 
         write_pdf(output / "report.html", output / "report.pdf")
-    if not quiet:
+    if json != "-":
         typer.echo(f"Verdict: {findings.verdict}. {findings.sentence()}")
         typer.echo(f"The report is {output / 'report.html'}.")
 
 
+def _twin_run(
+    structure: "Model",
+    record: list[Path],
+    mapping: Path | None,
+    output: Path,
+    settings: "Settings",
+    seed: int,
+    repository: str | None,
+    json: str | None,
+) -> "Findings":
+    """A twin on a record of readings: what is found, once its warnings are told."""
+    from rga.cli.output import check_targets
+    from rga.cli.progress import shown_progress
+    from rga.cli.reading import read_record
+
+    measured = read_record(record, structure, mapping)
+    check_targets(json)
+    for warning in _replaced(output, structure, measured, seed):
+        typer.echo(f"warning: {warning}", err=True)
+    # Not needed before the input is known to be good, and slow to import.
+    from rga.jobs.run import run as run_twin
+
+    with shown_progress() as progress:
+        outcome = run_twin(
+            structure,
+            measured,
+            output,
+            settings=settings,
+            seed=seed,
+            repository=repository,
+            progress=progress,
+            watch=None if json == "-" else _News(progress),
+        )
+    for warning in outcome.findings.warnings:
+        if warning not in measured.warnings:
+            typer.echo(f"warning: {warning}", err=True)
+    return outcome.findings
+
+
+def _modes_run(
+    structure: "Model",
+    modal: Path,
+    output: Path,
+    settings: "Settings",
+    seed: int,
+    json: str | None,
+) -> "Findings":
+    """Modes that are watched: what is found, once the warnings are told."""
+    from rga.cli.output import check_targets
+    from rga.cli.progress import shown_progress
+    from rga.records.modal.read import load_modal_record
+
+    measured = load_modal_record(modal, structure)
+    check_targets(json)
+    # Not needed before the input is known to be good, and slow to import.
+    from rga.jobs.run_modes import run_modes
+
+    with shown_progress() as progress:
+        outcome = run_modes(
+            structure,
+            measured,
+            output,
+            settings=settings,
+            seed=seed,
+            progress=progress,
+            watch=None if json == "-" else _tell_watch,
+        )
+    for warning in outcome.findings.warnings:
+        if outcome.watched.alarm is None or warning != outcome.watched.alarm.words:
+            typer.echo(f"warning: {warning}", err=True)
+    return outcome.findings
+
+
+def _tell_watch(watched: "WatchedModes") -> None:
+    """What has become of the frequencies, a line each."""
+    last = watched.baseline - 1
+    words = f"{watched.baseline} windows say what is usual"
+    typer.echo(f"{watched.time[last]}  window {last}  calibration: {words}")
+    if watched.alarm is None:
+        last = len(watched.time) - 1
+        typer.echo(f"{watched.time[last]}  window {last}  no alarm")
+    else:
+        row = watched.alarm.row
+        typer.echo(f"{watched.time[row]}  window {row}  alarm: {watched.alarm.words}")
+
+
 def _replaced(output: Path, model: "Model", record: "Record", seed: int) -> list[str]:
     """In words, that a directory holds the results of another run."""
-    from rga.errors import InputError
     from rga.findings.load import load_findings
     from rga.inputs import protected_inputs
 

@@ -10,15 +10,16 @@ from rga.arrays import FloatArray
 ORDER = 4
 #: rows for each weight, at least
 ROWS = 20
-#: readings with all that predict them, at least
-PREDICTED = 30
+#: pairs of readings so many rows apart, at least
+PAIRS = 30
 
 
 def predictors(deviations: FloatArray) -> FloatArray:
     """Weights that predict a deviation from the ones before it, for each sensor its own.
 
     Yule and Walker's equations for the autocovariances of normal scores, which outliers do not
-    disturb, solved order by order (Levinson); the order has the least BIC.
+    disturb, solved order by order (Levinson); the order has the least BIC. Each lag is told by the
+    pairs of readings so far apart, whatever is missing between them.
 
     Args:
         deviations: float[rows, sensors], NaN where missing.
@@ -42,12 +43,8 @@ def predictors(deviations: FloatArray) -> FloatArray:
     best = np.zeros((most, sensors))
     weights = np.zeros((most, sensors))
     error = covariance[0].copy()
-    count = there.sum(axis=0)
-    least = count * np.log(error)
-    predicted = there.copy()
+    criterion, least = np.zeros((2, sensors))
     for order in range(1, most + 1):
-        predicted[:order] = 0.0
-        predicted[order:] *= there[:-order]
         left = covariance[order] - sum(
             (weights[lag] * covariance[order - 1 - lag] for lag in range(order - 1)),
             start=np.zeros(sensors),
@@ -56,8 +53,9 @@ def predictors(deviations: FloatArray) -> FloatArray:
         weights[: order - 1] -= reflection * weights[: order - 1][::-1]
         weights[order - 1] = reflection
         error = error * (1.0 - reflection**2)
-        criterion = count * np.log(error) + order * np.log(count)
-        better = (criterion < least) & (predicted.sum(axis=0) >= PREDICTED)
+        told = pairs[order] * (rows / (rows - order))
+        criterion = criterion + told * np.log1p(-(reflection**2)) + np.log(told)
+        better = (criterion < least) & (pairs[order] >= PAIRS)
         best[:, better] = weights[:, better]
         least = np.minimum(least, criterion)
     order = int((np.abs(best).sum(axis=1) > 0).nonzero()[0].max(initial=-1)) + 1

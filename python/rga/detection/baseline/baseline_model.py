@@ -80,7 +80,7 @@ class Reference:
         deviations = baseline - level
         if weights is None:
             weights = predictors(deviations)
-        innovations = after_prediction(deviations, weights)
+        innovations = _core.innovations(deviations, weights)
         units, offset, slope, knots, bends, largest = fit_normal_scores(innovations)
         none = np.eye(len(level))
         plain = cls(
@@ -133,16 +133,6 @@ def medians(readings: FloatArray) -> FloatArray:
     """Of each column, without what is missing: `nanmedian` takes its time."""
     missing = np.isnan(readings).any()
     return np.asarray(np.nanmedian(readings, axis=0) if missing else np.median(readings, axis=0))
-
-
-def after_prediction(deviations: FloatArray, weights: FloatArray) -> FloatArray:
-    """What deviations differ by from what the ones before them let expect; NaN where unknown."""
-    found = deviations.copy()
-    for lag, weight in enumerate(weights, start=1):
-        earlier = np.full_like(found, np.nan)
-        earlier[lag:] = deviations[:-lag]
-        found -= np.where(weight == 0.0, 0.0, weight * earlier)
-    return found
 
 
 def fit_normal_scores(

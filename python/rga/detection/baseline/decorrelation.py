@@ -3,6 +3,7 @@
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.detection.baseline.incomplete import likeliest_covariance
 
 #: variance of a sum of sensors below which they repeat each other, and their least part in it
 REPEATED, PART = 0.02, 0.1
@@ -34,6 +35,21 @@ def independence(scores: FloatArray) -> FloatArray:
 
 
 def correlations(scores: FloatArray) -> tuple[FloatArray, float]:
+    """Of sensors, and the part of their scatter by chance.
+
+    Where readings are missing, what chance leaves of them is the likeliest beside all that is
+    there: rows need not be complete.
+
+    Args:
+        scores: float[rows, sensors], NaN where missing.
+    """
+    found, chance = pairwise(scores)
+    if chance > CHANCE or np.isfinite(scores).all():
+        return found, chance
+    return as_correlation(likeliest_covariance(scores, found)), chance
+
+
+def pairwise(scores: FloatArray) -> tuple[FloatArray, float]:
     """Of each two sensors over the rows that have both, and the part of their scatter by chance."""
     there = np.isfinite(scores).astype(float)
     whole = np.where(there > 0, scores, 0.0)
@@ -49,9 +65,13 @@ def correlations(scores: FloatArray) -> tuple[FloatArray, float]:
     chance = min(1.0, float(noise[others].sum()) / spread) if spread > 0 else 1.0
     # Pairs from different rows may contradict each other.
     values, vectors = np.linalg.eigh(np.where(others, found, 1.0))
-    found = (vectors * np.maximum(values, 0.0)) @ vectors.T
-    own = np.sqrt(np.diag(found))
-    return np.asarray(found / np.outer(own, own)), chance
+    return as_correlation((vectors * np.maximum(values, 0.0)) @ vectors.T), chance
+
+
+def as_correlation(covariance: FloatArray) -> FloatArray:
+    """The correlation of a covariance, float[sensors, sensors]."""
+    own = np.sqrt(np.diag(covariance))
+    return np.asarray(covariance / np.outer(own, own))
 
 
 def drawn_in(correlation: FloatArray, chance: float) -> FloatArray:

@@ -9,7 +9,7 @@ use super::{Alarm, ChangeStatistics, STATISTICS};
 use crate::refusal::Refusal;
 
 /// What the bytes are, and the version of their layout.
-const MARK: u64 = u64::from_le_bytes(*b"rgachg01");
+const MARK: u64 = u64::from_le_bytes(*b"rgachg02");
 
 /// No stream is longer.
 const MOST: u64 = 1 << 62;
@@ -38,7 +38,8 @@ impl ChangeStatistics {
             statistic,
             banks.rows,
         ];
-        let doubles = reference.arrays().into_iter().chain([&reference.past]);
+        let memory = [&reference.past, &reference.doubt];
+        let doubles = reference.arrays().into_iter().chain(memory);
         let singles = [
             &self.thresholds[..],
             &self.peaks,
@@ -47,7 +48,7 @@ impl ChangeStatistics {
             &banks.sums,
             &recent.ring,
         ];
-        let counts = header.iter().chain(&reference.unsettled).copied();
+        let counts = header.into_iter();
         let doubles = doubles.flatten().map(|value| value.to_bits());
         let singles = singles.into_iter().flatten();
         counts
@@ -89,7 +90,6 @@ impl ChangeStatistics {
         if mark != MARK || sensors == 0 || !placed || !raised || rows.max(blocks) > MOST {
             return Err(foreign());
         }
-        let unsettled = rest.counts(sensors)?;
         let mut array = |rows: usize| rest.doubles(rows * sensors);
         let (level, weights) = (array(1)?, array(order)?);
         let (units, offset, slope) = (array(1)?, array(1)?, array(1)?);
@@ -97,6 +97,7 @@ impl ChangeStatistics {
         let (mixing, signature) = (array(sensors)?, array(1)?);
         let largest = rest.doubles(1)?[0];
         let past = rest.doubles(order * sensors)?;
+        let doubt = rest.doubles(order * order * sensors)?;
         let mut reference = Reference::new(ReferenceArrays {
             level: Array::new(&level, &[sensors]),
             weights: Array::new(&weights, &[order, sensors]),
@@ -109,7 +110,7 @@ impl ChangeStatistics {
             signature: Array::new(&signature, &[sensors]),
             largest,
         })?;
-        (reference.past, reference.unsettled) = (past, unsettled);
+        (reference.past, reference.doubt) = (past, doubt);
         let mut banks = Banks::new(sensors);
         banks.rows = blocks;
         let mut recent = Recent::new(sensors, kept);

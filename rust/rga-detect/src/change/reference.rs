@@ -6,6 +6,8 @@
 
 mod autoregression;
 mod decorrelation;
+mod gaps;
+mod memory;
 mod normal_scores;
 
 use rga_simd::Array;
@@ -14,6 +16,10 @@ use rga_simd::f32::{Lanes, SIXTEEN, sixteens};
 use crate::change::{BLOCK_ROWS, Block};
 use crate::refusal::Refusal;
 use autoregression::any_missing;
+use gaps::Gaps;
+use memory::{reach, unknown};
+
+pub use memory::innovations;
 
 /// Scores are never beyond this: one reading alone says no more.
 pub(super) const LARGEST_SCORE: f32 = 6.0;
@@ -41,8 +47,9 @@ pub struct Reference {
     pub(super) signature: Vec<f64>,
     /// `[order, p]` deviations from the level, the latest first
     pub(super) past: Vec<f64>,
-    /// `[p]` rows until the deviations that predict a reading are known
-    pub(super) unsettled: Vec<u64>,
+    /// `[p, order, order]` covariance of what is not known of these, as `Memory` has it; the first
+    /// entries of a sensor whose order is less
+    pub(super) doubt: Vec<f64>,
     /// `[1]` scores beyond this are cut
     pub(super) largest: Vec<f64>,
     derived: Derived,
@@ -52,7 +59,7 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Derived {
     /// `[p]` how far back deviations have a weight
-    reach: Vec<u64>,
+    reach: Vec<usize>,
     units: Vec<f64>,
     /// `[1 + 1 + 2 knots, 16]` for each sixteen: offset, slope, and knots with their bends
     bending: Vec<f32>,
@@ -126,22 +133,26 @@ impl Reference {
             mixing,
             signature,
             largest: vec![arrays.largest],
-            unsettled: Vec::new(),
+            doubt: Vec::new(),
             derived: Derived::default(),
         };
         reference.derive();
-        reference.unsettled.clone_from(&reference.derived.reach);
+        reference.doubt = vec![0.0; order * order * p];
+        for sensor in 0..p {
+            let reach = reference.derived.reach[sensor];
+            let own: Vec<f64> = (0..reach)
+                .map(|lag| reference.weights[lag * p + sensor])
+                .collect();
+            reference.doubt[sensor * order * order..][..reach * reach]
+                .copy_from_slice(&unknown(&own));
+        }
         Ok(reference)
     }
 
     pub(super) fn derive(&mut self) {
         let sensors = self.sensors();
-        let reach = |sensor: usize| {
-            let weight = |lag: &usize| self.weights[lag * sensors + sensor] != 0.0;
-            let last = (0..self.order()).rev().find(weight);
-            last.map_or(0, |lag| lag as u64 + 1)
-        };
-        let reach = (0..sensors).map(reach).collect();
+        let reach = (0..sensors).map(|sensor| reach(&self.weights, sensors, sensor));
+        let reach = reach.collect();
         let mut units = self.units.clone();
         units.resize(sixteens(sensors) * SIXTEEN, 0.0);
         let mut bending = Vec::new();
@@ -226,9 +237,10 @@ impl Reference {
                 continue;
             }
             if gap {
-                let spoil =
-                    |sensor: usize| work.scores[sensor / SIXTEEN][row][sensor % SIXTEEN] = f32::NAN;
-                self.remember_with_gaps(readings, &work.expected, spoil);
+                let shrink = |sensor: usize, share: f64| {
+                    work.scores[sensor / SIXTEEN][row][sensor % SIXTEEN] *= share as f32;
+                };
+                self.remember_with_gaps(readings, shrink);
                 work.settled = self.settled();
                 self.expect(&mut work.expected[..sensors]);
             } else {
@@ -274,7 +286,13 @@ impl Reference {
     ) {
         self.bend::<L, N, GAPS>(lanes, &mut work.scores, first);
         if !self.derived.columns.is_empty() {
-            self.mix::<L, N, GAPS>(lanes, &mut work.scores, &mut work.mixed, first);
+            self.mix::<L, N, GAPS>(
+                lanes,
+                &mut work.scores,
+                &mut work.mixed,
+                first,
+                &mut work.gaps,
+            );
         }
     }
 }
@@ -302,6 +320,7 @@ pub(crate) struct Work {
     /// NaN behind the last sensor.
     pub scores: Vec<Block>,
     mixed: Vec<Block>,
+    gaps: Gaps,
 }
 
 impl Work {
@@ -315,6 +334,7 @@ impl Work {
             expected,
             scores: vec![[[f32::NAN; _]; _]; sixteens(sensors)],
             mixed: vec![[[0.0; _]; _]; sixteens(sensors)],
+            gaps: Gaps::default(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What readings are expected to be, from the ones before them.
 
 use super::Reference;
+use super::memory::Memory;
 
 impl Reference {
     /// What the next readings are expected to be, `[p]`; of an order above 0.
@@ -28,7 +29,7 @@ impl Reference {
 
     /// Whether the deviations that predict the next readings are known.
     pub(super) fn settled(&self) -> bool {
-        self.unsettled.iter().all(|rows| *rows == 0)
+        self.doubt.iter().all(|variance| *variance == 0.0)
     }
 
     /// Takes a row of which nothing is missing, and tells what the next one is expected to be.
@@ -49,32 +50,30 @@ impl Reference {
         self.expect_from_earlier(expected);
     }
 
-    /// A missing reading is taken for the expected one; those that it would have helped to
-    /// predict are not judged: their scores, told by `spoil`, are none.
+    /// A missing reading is taken for the expected one. What is expected of the next is the less
+    /// sure the more is missing before it: scores are drawn in by `shrink`, and stay as rare.
     #[inline(never)]
     pub(super) fn remember_with_gaps(
         &mut self,
         readings: &[f64],
-        expected: &[f64],
-        mut spoil: impl FnMut(usize),
+        mut shrink: impl FnMut(usize, f64),
     ) {
         let (sensors, order) = (self.sensors(), self.order());
         for (sensor, reading) in readings.iter().enumerate() {
-            for lag in (1..order).rev() {
-                self.past[lag * sensors + sensor] = self.past[(lag - 1) * sensors + sensor];
-            }
-            let unsettled = &mut self.unsettled[sensor];
-            let taken = if reading.is_nan() {
-                *unsettled = self.derived.reach[sensor];
-                expected[sensor]
-            } else {
-                if *unsettled > 0 {
-                    *unsettled -= 1;
-                    spoil(sensor);
-                }
-                *reading
+            let own = self.derived.reach[sensor];
+            let lags = (0..own).map(|lag| lag * sensors + sensor);
+            let weights: Vec<f64> = lags.clone().map(|at| self.weights[at]).collect();
+            let mut past: Vec<f64> = lags.clone().map(|at| self.past[at]).collect();
+            let mut memory = Memory {
+                weights: &weights,
+                past: &mut past,
+                doubt: &mut self.doubt[sensor * order * order..][..own * own],
             };
-            self.past[sensor] = taken - self.level[sensor];
+            let (_, variance) = memory.take(reading - self.level[sensor]);
+            shrink(sensor, 1.0 / variance.sqrt());
+            for (at, deviation) in lags.zip(past) {
+                self.past[at] = deviation;
+            }
         }
     }
 }

@@ -3,10 +3,8 @@
 use rga_simd::f32::{Lanes, SIXTEEN};
 
 use super::Reference;
+use super::gaps::{Gaps, missing};
 use crate::change::Block;
-
-/// Sweeps that fill missing scores with what the others of the row let expect.
-const SWEEPS: usize = 8;
 
 impl Reference {
     /// N rows, from one on, worked out in as much space. `GAPS`: some scores are NaN, which stays.
@@ -17,9 +15,10 @@ impl Reference {
         scores: &mut [Block],
         mixed: &mut [Block],
         first: usize,
+        gaps: &mut Gaps,
     ) {
         if GAPS {
-            self.products_with_gaps(lanes, scores, mixed, first);
+            self.products_with_gaps(lanes, scores, mixed, first, gaps);
         } else {
             self.products::<L, N>(lanes, scores, mixed, first);
         }
@@ -59,8 +58,7 @@ impl Reference {
         }
     }
 
-    /// Missing scores take the values that are likeliest beside the others: those that make the
-    /// sum of squares of the independent scores least, found one after the other.
+    /// What is there becomes independent by its own law; what is missing stays so.
     #[inline(always)]
     fn products_with_gaps<L: Lanes>(
         &self,
@@ -68,41 +66,31 @@ impl Reference {
         scores: &mut [Block],
         mixed: &mut [Block],
         row: usize,
+        gaps: &mut Gaps,
     ) {
         let sensors = self.sensors();
+        let missing = missing(scores, row, sensors);
         let place = |sensor: usize| (sensor / SIXTEEN, sensor % SIXTEEN);
-        let mut missing = Vec::new();
-        for sensor in 0..sensors {
-            let (block, lane) = place(sensor);
-            let score = &mut scores[block][row][lane];
-            if score.is_nan() {
-                missing.push(sensor);
-                *score = 0.0;
-            }
+        for (block, lane) in missing.iter().copied().map(place) {
+            scores[block][row][lane] = 0.0;
         }
         self.products::<L, 1>(lanes, scores, mixed, row);
-        for _ in 0..SWEEPS {
-            for sensor in &missing {
-                let own = &self.mixing[sensor * sensors..][..sensors];
-                let blocks = own.chunks(SIXTEEN).zip(&mut *mixed);
-                let mut along = 0.0;
-                for (own, block) in blocks {
-                    for (w, score) in own.iter().zip(&block[row]) {
-                        along += w * f64::from(*score);
-                    }
-                }
-                let length: f64 = own.iter().map(|w| w * w).sum();
-                let step = -along / length;
-                for (own, block) in own.chunks(SIXTEEN).zip(&mut *mixed) {
-                    for (w, score) in own.iter().zip(&mut block[row]) {
-                        *score += (step * w) as f32;
-                    }
-                }
-            }
-        }
-        for sensor in missing {
-            let (block, lane) = place(sensor);
+        for (block, lane) in missing.iter().copied().map(place) {
             scores[block][row][lane] = f32::NAN;
+        }
+        if missing.is_empty() || missing.len() == sensors {
+            return;
+        }
+        gaps.again(missing, &self.mixing, sensors);
+        let among = |sensor: usize| {
+            let (block, lane) = place(sensor);
+            f64::from(mixed[block][row][lane])
+        };
+        let mut whole: Vec<f64> = (0..sensors).map(among).collect();
+        gaps.close(&mut whole);
+        for (sensor, score) in whole.into_iter().enumerate() {
+            let (block, lane) = place(sensor);
+            mixed[block][row][lane] = score as f32;
         }
     }
 }

@@ -56,7 +56,15 @@ impl Banks {
                 *count += behind - lanes.sum(missing);
             }
         }
-        let (alike, squares) = (lanes.sums(totals.alike), lanes.sums(totals.squares));
+        let (mut alike, squares) = (lanes.sums(totals.alike), lanes.sums(totals.squares));
+        if GAPS {
+            for (row, lengths) in totals.lengths.into_iter().enumerate() {
+                // What is there of the signature has norm 1 again.
+                if counts[row] < self.sensors as f32 {
+                    alike[row] /= lanes.sum(lengths).sqrt().max(f32::MIN_POSITIVE);
+                }
+            }
+        }
         let mut sums = [[0.0; SUMS]; N];
         for (row, sums) in sums.iter_mut().enumerate() {
             let count = counts[row];
@@ -163,6 +171,8 @@ struct Totals<L: Lanes, const N: usize> {
     alike: [L::Numbers; N],
     squares: [L::Numbers; N],
     missing: [L::Numbers; N],
+    /// Sums of the squares of the signature where scores are there.
+    lengths: [L::Numbers; N],
 }
 
 impl<L: Lanes, const N: usize> Totals<L, N> {
@@ -177,6 +187,7 @@ impl<L: Lanes, const N: usize> Totals<L, N> {
             alike: [zero; N],
             squares: [zero; N],
             missing: [zero; N],
+            lengths: [zero; N],
         }
     }
 
@@ -197,6 +208,8 @@ impl<L: Lanes, const N: usize> Totals<L, N> {
                 let missing = lanes.select(present, lanes.splat(0.0), lanes.splat(1.0));
                 self.missing[row] = lanes.add(self.missing[row], missing);
                 state[2] = lanes.add(state[2], missing);
+                let there = lanes.select(present, weight, lanes.splat(0.0));
+                self.lengths[row] = lanes.mul_add(there, there, self.lengths[row]);
             }
         }
         let [sum, squares, ..] = state;
