@@ -20,6 +20,7 @@ from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.findings.load import as_findings, findings_sha256
+from rga.findings.phrases import effect_words
 from rga.model import Model, as_model
 from rga.numerics.seeds import as_seed
 from rga.planning.advised import advised
@@ -183,7 +184,13 @@ def _planned(
     made = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
     driven = any(test.position is not None for test in made)
     return Plan(
-        sentence=" ".join([_sentence(separations, scope, choice), *_compared(beside, least)]),
+        sentence=" ".join(
+            [
+                _sentence(separations, scope, choice),
+                *_compared(beside, least),
+                *_by_modes(model, findings),
+            ]
+        ),
         sensors=[planned_sensor(site, scope.errors, pairs, choice, one) for one in choice.sensors],
         tests=made,
         truck=_truck(truck, lane) if driven and truck and lane else None,
@@ -270,6 +277,19 @@ def _compared(beside: Sequence[Advised], least: float) -> list[str]:
     ]
 
 
+def _by_modes(model: Model, findings: Findings) -> list[str]:
+    """That no natural frequency is planned, and what the findings say of them, in words."""
+    if not model.modes:
+        return []
+    plain = "Only sensors and load tests are planned, natural frequencies and shapes are not."
+    told = (
+        f"Of {effect_words(one.effect)} the findings advise, {one.separated_by}."
+        for one in findings.causes
+        if one.separated_by
+    )
+    return [plain, *told]
+
+
 def _separable(scope: Scope) -> list[int]:
     """Pairs that something could separate."""
     least = scope.criteria.advice.success
@@ -323,7 +343,7 @@ def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -
         share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
         if one.log_odds is not None and one.log_odds >= criteria.rivals.log_odds:
             again = (
-                "nothing that is measured from now on does so again"
+                "no sensor and no load test does so again"
                 if hopeless
                 else (f"this budget does not do so again ({share})")
             )

@@ -7,6 +7,7 @@ from planned_bridge import EAST, GAIN, SOFT
 from rga.errors import InputError
 from rga.findings import Findings
 from rga.model import Model
+from rga.model.schema import ExpectedMode
 from rga.planning.planner import plan
 
 WEAK = {**SOFT, "factor": {"value": 0.7, "ci90": [0.65, 0.75]}}
@@ -42,6 +43,15 @@ def test_nothing_to_separate_needs_nothing(model: Model) -> None:
     assert (found.sensors, found.tests, found.separations) == ([], [], [])
     assert found.cost == 0.0
     assert found.sentence
+
+
+def test_that_no_frequency_is_planned_is_told(model: Model) -> None:
+    swinging = model.model_copy(update={"modes": {"first": ExpectedMode(near=3.0)}})
+    advised = cause(WEAK, HIGH, separated_by="against it: a parked truck")
+    told = plan(swinging, findings(advised), sensors=1, positions=1).sentence
+    assert "natural frequencies and shapes are not" in told
+    assert "against it: a parked truck." in told
+    assert "frequencies" not in plan(model, findings(advised), sensors=1, positions=1).sentence
 
 
 def test_findings_of_another_model_are_refused(model: Model) -> None:

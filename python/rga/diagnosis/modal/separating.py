@@ -8,9 +8,11 @@ from rga.diagnosis.modal.likelihood import ModalLikelihood
 
 #: difference of a shape, over its largest motion, that an accelerometer is worth
 WORTH = 0.1
-#: kinds that a known mass or a static load tells from stiffness
-COMMON = frozenset(
-    {"elastic_modulus", "mass_factor", "added_mass", "clock_rate", "member_stiffness"}
+#: kinds that move all modes much alike, and what tells each from those of the other lines
+COMMON: tuple[tuple[frozenset[str], str], ...] = (
+    (frozenset({"mass_factor", "added_mass"}), "a parked truck of known mass"),
+    (frozenset({"elastic_modulus", "member_stiffness"}), "a static test under a known load"),
+    (frozenset({"clock_rate"}), "a tone of known frequency in the same logger"),
 )
 AXES = ("x", "y", "z")
 
@@ -25,10 +27,22 @@ def separating(likelihood: ModalLikelihood, one: ModalFit, other: ModalFit) -> s
             f"an accelerometer at {node} along {axis}: in mode {mode} the two differ there by "
             f"{apart:.0%} of its largest motion"
         )
-    kinds = {fit.hypotheses[-1].name for fit in (one, other) if fit.hypotheses}
-    if kinds <= COMMON and len(kinds) > 1:
-        advice.append("a parked truck of known mass, or a static test under a known load")
+    advice += common_tests({fit.hypotheses[-1].name for fit in (one, other) if fit.hypotheses})
     return "; or ".join(advice) or "no point of the structure tells them apart by its shapes"
+
+
+def common_tests(kinds: set[str]) -> list[str]:
+    """What tells two kinds apart that move all modes much alike; nothing of other kinds.
+
+    >>> common_tests({"mass_factor", "clock_rate"})
+    ['a parked truck of known mass', 'a tone of known frequency in the same logger']
+    >>> common_tests({"elastic_modulus"}), common_tests({"elastic_modulus", "support_spring"})
+    ([], [])
+    """
+    lines = [(those & kinds, test) for those, test in COMMON]
+    alike = set().union(*(own for own, _ in lines)) == kinds and len(kinds) > 1
+    told = [test for own, test in lines if own]
+    return told if alike and len(told) > 1 else []
 
 
 def _place(
