@@ -2,8 +2,7 @@
 //!
 //! Every sum is a chain of fused multiply-adds in a fixed order, so that a sample has the same bits
 //! in any lane of any instruction set. Sums stay in registers (`tiles`).
-//! Right-hand sides go through the factor in `substitution`. With signs to its pivots the factor is
-//! that of a matrix that need not be positive definite, of which eigenvalues are counted.
+//! Right-hand sides go through the factor in `substitution`.
 
 // Tiles are indexed by loops of fixed lengths, which are unrolled.
 #![allow(clippy::needless_range_loop)]
@@ -26,9 +25,6 @@ pub(super) struct Cholesky<'a, L: Lanes> {
     pub diagonal: Vec<L::Numbers>,
     /// Lanes of which every pivot is at least a share of the diagonal.
     pub sound: L::Mask,
-    /// Signs of the pivots, and how many are negative, of a matrix that was counted.
-    signs: Vec<L::Numbers>,
-    negative: L::Numbers,
 }
 
 impl<'a, L: Lanes> Cholesky<'a, L> {
@@ -39,8 +35,6 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             inverse: vec![zero; panels.size()],
             diagonal: vec![zero; panels.size()],
             sound: lanes.at_most(zero, zero),
-            signs: vec![zero; panels.size()],
-            negative: zero,
             panels,
         }
     }
@@ -57,33 +51,13 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         right: &mut [L::Numbers],
     ) {
         let cholesky = self;
-        lanes.vectorize(Factorise::<L, false> {
+        lanes.vectorize(Factorise {
             lanes,
             cholesky,
             weights,
             share,
             right,
         });
-    }
-
-    /// How many eigenvalues are negative of a matrix that need not be positive definite: as many
-    /// as pivots (Sylvester's law of inertia). Pivots are held against the diagonal of the K that
-    /// was factorised before; its factor is lost.
-    pub(super) fn negative_eigenvalues(
-        &mut self,
-        lanes: L,
-        weights: &[L::Numbers],
-        share: f64,
-    ) -> L::Numbers {
-        let cholesky = &mut *self;
-        lanes.vectorize(Factorise::<L, true> {
-            lanes,
-            cholesky,
-            weights,
-            share,
-            right: &mut [],
-        });
-        self.negative
     }
 
     /// Solves K x = `right` in place, `N` right-hand sides beside each other.
@@ -97,7 +71,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     }
 
     #[inline(always)]
-    fn fill<const SIGNED: bool>(&mut self, lanes: L, panel: &Panel, weights: &[L::Numbers]) {
+    fn fill(&mut self, lanes: L, panel: &Panel, weights: &[L::Numbers]) {
         let values = &mut self.values[panel.numbers()];
         for &place in &panel.empty {
             values[place as usize] = lanes.splat(0.0);
@@ -118,9 +92,6 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             }
             values[sum[0].place as usize] = total;
         }
-        if SIGNED {
-            return;
-        }
         let own = &mut self.diagonal[panel.first..panel.first + panel.width];
         for (place, value) in own.iter_mut().zip(values.iter().step_by(panel.rows() + 1)) {
             *place = *value;
@@ -129,7 +100,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
 
     /// Columns of one panel, some at a time.
     #[inline(always)]
-    fn factorise_panel<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
+    fn factorise_panel<const TALL: usize, const WIDE: usize>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -137,20 +108,20 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     ) {
         let mut column = 0;
         while column + WIDE <= panel.width {
-            self.factorise_columns::<TALL, WIDE, SIGNED>(lanes, panel, column, share);
+            self.factorise_columns::<TALL, WIDE>(lanes, panel, column, share);
             column += WIDE;
         }
         match panel.width - column {
-            3 => self.factorise_columns::<TALL, 3, SIGNED>(lanes, panel, column, share),
-            2 => self.factorise_columns::<TALL, 2, SIGNED>(lanes, panel, column, share),
-            1 => self.factorise_columns::<TALL, 1, SIGNED>(lanes, panel, column, share),
+            3 => self.factorise_columns::<TALL, 3>(lanes, panel, column, share),
+            2 => self.factorise_columns::<TALL, 2>(lanes, panel, column, share),
+            1 => self.factorise_columns::<TALL, 1>(lanes, panel, column, share),
             _ => {}
         }
     }
 
     /// What the columns before take, then the columns themselves.
     #[inline(always)]
-    fn factorise_columns<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
+    fn factorise_columns<const TALL: usize, const WIDE: usize>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -160,27 +131,17 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         let rows = panel.rows();
         let (before, own) = self.values[panel.numbers()].split_at_mut(column * rows);
         let mut triangle = load::<L, WIDE, WIDE>(lanes, own, rows, column);
-        let given = (&*before, &self.signs[panel.first..panel.first + column]);
-        take_products::<L, WIDE, WIDE, SIGNED>(lanes, given, rows, (column, column), &mut triangle);
+        take_products(lanes, before, rows, (column, column), &mut triangle);
         let mut inverse = [lanes.splat(0.0); WIDE];
         for at in 0..WIDE {
             let unknown = panel.first + column + at;
             let pivot = triangle[at][at];
             let least = lanes.mul(lanes.splat(share), self.diagonal[unknown]);
-            let size = if SIGNED { lanes.abs(pivot) } else { pivot };
-            let strong = lanes.at_most(least, size);
+            let strong = lanes.at_most(least, pivot);
             self.sound = lanes.and(self.sound, strong);
             // The next pivot waits for this division, and not for the root as well.
             let of_one = lanes.div(lanes.splat(1.0), pivot);
-            let of_size = if SIGNED { lanes.abs(of_one) } else { of_one };
-            inverse[at] = lanes.sqrt(of_size);
-            if SIGNED {
-                let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
-                let negative = lanes.above(zero, pivot);
-                self.signs[unknown] = lanes.select(negative, lanes.neg(one), one);
-                let counted = lanes.select(negative, one, zero);
-                self.negative = lanes.add(self.negative, counted);
-            }
+            inverse[at] = lanes.sqrt(of_one);
             self.inverse[unknown] = inverse[at];
             for other in 0..WIDE {
                 if other > at {
@@ -201,17 +162,8 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         }
         // What stands above the diagonal counts for nothing.
         store(lanes, own, rows, column, &triangle);
-        if SIGNED {
-            for at in 0..WIDE {
-                let sign = self.signs[panel.first + column + at];
-                for value in &mut triangle[at] {
-                    *value = lanes.mul(*value, sign);
-                }
-            }
-        }
-        let below = Below::<_, WIDE, SIGNED> {
+        let below = Below {
             before,
-            signs: &self.signs[panel.first..panel.first + column],
             rows,
             column,
             triangle: &triangle,
@@ -232,7 +184,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     }
 
     #[inline(always)]
-    fn hand_on<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
+    fn hand_on<const TALL: usize, const WIDE: usize>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -240,9 +192,8 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     ) {
         let other = &self.panels.panels[update.to];
         let (before, behind) = self.values.split_at_mut(other.start);
-        let hand = Hand::<_, SIGNED> {
+        let hand = Hand {
             given: &before[panel.numbers()],
-            signs: &self.signs[panel.first..panel.first + panel.width],
             height: panel.rows(),
             skipped: panel.width + update.from,
             rows: &update.rows,
@@ -268,7 +219,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
 const WIDE: usize = 4;
 
 /// Compiled once for an instruction set, not wherever it is called.
-struct Factorise<'a, 'b, L: Lanes, const SIGNED: bool> {
+struct Factorise<'a, 'b, L: Lanes> {
     lanes: L,
     cholesky: &'a mut Cholesky<'b, L>,
     weights: &'a [L::Numbers],
@@ -276,7 +227,7 @@ struct Factorise<'a, 'b, L: Lanes, const SIGNED: bool> {
     right: &'a mut [L::Numbers],
 }
 
-impl<L: Lanes, const SIGNED: bool> NullaryFnOnce for Factorise<'_, '_, L, SIGNED> {
+impl<L: Lanes> NullaryFnOnce for Factorise<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]
@@ -289,7 +240,7 @@ impl<L: Lanes, const SIGNED: bool> NullaryFnOnce for Factorise<'_, '_, L, SIGNED
     }
 }
 
-impl<L: Lanes, const SIGNED: bool> Factorise<'_, '_, L, SIGNED> {
+impl<L: Lanes> Factorise<'_, '_, L> {
     #[inline(always)]
     fn factorise<const TALL: usize>(self) {
         let Self {
@@ -301,24 +252,20 @@ impl<L: Lanes, const SIGNED: bool> Factorise<'_, '_, L, SIGNED> {
         } = self;
         let panels = cholesky.panels;
         let zero = lanes.splat(0.0);
-        (cholesky.sound, cholesky.negative) = (lanes.at_most(zero, zero), zero);
+        cholesky.sound = lanes.at_most(zero, zero);
         for panel in &panels.panels {
             if panel.is_first {
-                cholesky.fill::<SIGNED>(lanes, panel, weights);
+                cholesky.fill(lanes, panel, weights);
             }
-            cholesky.factorise_panel::<TALL, WIDE, SIGNED>(lanes, panel, share);
-            if !SIGNED {
-                cholesky.forward::<1>(lanes, panel, right);
-            }
+            cholesky.factorise_panel::<TALL, WIDE>(lanes, panel, share);
+            cholesky.forward::<1>(lanes, panel, right);
             for &other in &panel.fills {
-                cholesky.fill::<SIGNED>(lanes, &panels.panels[other], weights);
+                cholesky.fill(lanes, &panels.panels[other], weights);
             }
             for update in &panel.updates {
-                cholesky.hand_on::<TALL, WIDE, SIGNED>(lanes, panel, update);
+                cholesky.hand_on::<TALL, WIDE>(lanes, panel, update);
             }
         }
-        if !SIGNED {
-            cholesky.backward::<1>(lanes, right);
-        }
+        cholesky.backward::<1>(lanes, right);
     }
 }
