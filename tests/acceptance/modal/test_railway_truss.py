@@ -124,5 +124,5 @@ def test_modes_add_what_is_lateral_and_leave_what_the_gauges_say(behind_the_trai
     directions = {one["dof"] for one in (lateral.effect, *lateral.rivals)}
     assert "uy" in directions
     assert "uz" not in directions
-    # How d7 moves is that of no cause: it weighs against softer laterals most.
+    # No cause moves d7 as it was measured, which is told.
     assert "the shape of mode lateral" in findings.unexplained.looks_like
