@@ -100,7 +100,7 @@ def usual(missing: str, draw: int) -> NDArray[np.float64]:
 @pytest.mark.parametrize("missing", ["none", "few", "many", "cold", "never whole"])
 def test_false_alarms_are_no_more_frequent_whatever_is_missing(missing: str) -> None:
     """Over `arl0` rows the chance of one is 1 - 1/e."""
-    arl0, draws, alarms = 500, 60, 0
+    arl0, draws, alarms = 500, 40, 0
     for draw in range(draws):
         rows = usual(missing, draw)
         monitor = SyncMonitor(rows[:300], arl0=arl0)
