@@ -118,3 +118,12 @@ def test_what_was_fitted_beforehand_makes_thresholds_higher() -> None:
     assert plain.update_many(rows[400:]).sum() > cautious.update_many(rows[400:]).sum()
     with pytest.raises(InputError, match="fitted is -1"):
         SyncMonitor(rows[:400], fitted=-1)
+
+
+def test_sensors_that_repeat_each_other_leave_a_covariance() -> None:
+    drawn = np.random.default_rng(4).standard_normal((60, 2))
+    scores = drawn[:, [0, 0, 1, 1, 1]]
+    scores[::7, 0] = scores[3::5, 3] = np.nan
+    found = likeliest_covariance(scores, np.eye(5))
+    assert np.isfinite(np.linalg.cholesky(found)).all()
+    assert found[0, 1] == pytest.approx(np.sqrt(found[0, 0] * found[1, 1]), rel=0.02)

@@ -6,7 +6,7 @@ from rga.arrays import FloatArray
 
 #: rounds at most, and a change of a correlation that is none
 ROUNDS, SETTLED = 30, 2e-3
-#: variance that is left of every direction to begin with, as a share
+#: variance that is left of every direction, as a share
 LEAST = 1e-3
 #: work of a round, patterns of gaps times sensors cubed: beyond it there are so many rows that each
 #: two sensors tell what they have in common by themselves
@@ -51,7 +51,9 @@ def likeliest_covariance(scores: FloatArray, start: FloatArray) -> FloatArray:
         filling = there + lacking @ found @ inverse
         left = lacking @ (found - found @ inverse @ found) @ lacking
         expected = filling @ products @ filling.transpose(0, 2, 1) + number * left
-        before, found = found, expected.sum(axis=0) / len(rows)
+        # Sensors that repeat each other would leave no variance of what they differ by.
+        likeliest = expected.sum(axis=0) / len(rows)
+        before, found = found, (1.0 - LEAST) * likeliest + LEAST * np.diag(np.diag(likeliest))
         if np.abs(found - before).max() < SETTLED:
             break
     return np.asarray(found)
