@@ -8,6 +8,7 @@ import numpy as np
 from rga import _core
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.supports import supports
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
 from rga.model.parameter import Estimated
@@ -27,8 +28,6 @@ from rga.simulation.modal.pairing import (
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
 
-#: structures that stand for those of all windows where a context drives them
-SUPPORTS = 7
 #: modes computed beyond the expected ones, so that none is missed in its place
 BEYOND = 4
 #: shares of its frequency, in those that a mode may well differ by, within which it is looked for
@@ -87,13 +86,14 @@ class ModalTrials:
         always = {name: one for name, one in model.effects.items() if name not in self._own}
         structures = ModalStructures(model.model_copy(update={"effects": always}))
         self._given = _contexts(model, structures.needed, readings)
-        chosen, self._weights = self._supports(structures.needed)
+        driving = [self._given[name] for name in sorted(structures.needed)]
+        standing = [one.weight(readings.time) for one in always.values() if _stands_late(one)]
+        chosen, self._weights, self._middle = supports(readings, driving, standing)
         self._contexts: Values = {name: column[chosen] for name, column in self._given.items()} | {
             "time": readings.time[chosen]
         }
         self._structures = structures.each_under(self._contexts)
         self._values = structures.parameters(self._contexts)
-        self._middle = len(chosen) // 2
         reach = [look.near * np.exp(REACH * look.within) for look in readings.looks]
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
@@ -182,35 +182,6 @@ class ModalTrials:
         strain, kinetic = _core.modal_energies(structure.arrays, structure.masses, shapes)
         own = squares[found.number][:, None]
         return 0.5 * strain[found.number] / own, -0.5 * kinetic[found.number]
-
-    def _supports(self, needed: set[str]) -> tuple[IntArray, FloatArray]:
-        """Windows that stand for all, and the share of each in every window.
-
-        Returns:
-            int[supports], and float[windows, supports].
-        """
-        windows = len(self.readings.time)
-        driven = [name for name in needed if np.ptp(self._given[name]) > 0]
-        if not driven:
-            return np.array([windows // 2]), np.ones((windows, 1))
-        # Along the context that says most of the frequencies; others as they are beside it.
-        column = max((self._given[name] for name in sorted(driven)), key=self._told)
-        order = np.argsort(column, kind="stable")
-        places = np.unique(np.linspace(0, windows - 1, min(SUPPORTS, windows)).round().astype(int))
-        chosen = order[places]
-        chosen = chosen[np.unique(column[chosen], return_index=True)[1]]
-        at = column[chosen]
-        weights = np.array([np.interp(column, at, one) for one in np.eye(len(chosen))]).T
-        return chosen, weights
-
-    def _told(self, column: FloatArray) -> float:
-        """How much a context says of the frequencies: sum of squared correlations."""
-        total = 0.0
-        for log_f in self.readings.log_f.T:
-            seen = np.isfinite(log_f)
-            if seen.sum() > 2 and np.ptp(column[seen]) > 0 and np.ptp(log_f[seen]) > 0:
-                total += float(np.corrcoef(column[seen], log_f[seen])[0, 1] ** 2)
-        return total
 
     def _state(self, effects: Sequence[Effect]) -> Prediction:
         """The modes where effects act all the time, under the contexts that stand for all."""
@@ -344,6 +315,11 @@ def _of_windows(effect: Effect) -> bool:
     """Whether an effect of the model acts in some windows only, or on what a clock says."""
     late = effect.onset is not None and effect.swinging() is effect
     return late or effect.overrides("frequency_factor")
+
+
+def _stands_late(effect: Effect) -> bool:
+    """Whether an effect of the model brings a mass that stands there in some windows only."""
+    return effect.onset is not None and effect.swinging() not in (None, effect)
 
 
 def _partly(effect: Effect, weight: float) -> Effect | None:

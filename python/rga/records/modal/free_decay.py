@@ -14,6 +14,7 @@ from scipy import signal, stats
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.errors import InputError
+from rga.records.modal.poles import alike_poles
 from rga.records.modal.read import as_real
 
 #: samples that are kept of a period of the highest frequency
@@ -29,10 +30,6 @@ BEGINNINGS = 5
 ROUNDING = 1e-12
 #: periods that a decay has of a mode, and most damping that a structure has
 PERIODS, MOST_DAMPING = 4, 0.1
-#: of the same mode: frequencies apart, and MAC
-SAME, ALIKE = 0.02, 0.9
-#: share of the realisations by which a mode is found
-OFTEN = 0.5
 #: part of a frequency about it in which noise is looked at
 ABOUT = 0.3
 #: of noise alone that anything stands out of it
@@ -179,18 +176,7 @@ class _Poles:
 
     def alike(self) -> Iterator[BoolArray]:
         """Poles that are of one mode, bool[poles], of each that enough realisations have."""
-        frequency = np.abs(self.rate)
-        same = np.abs(np.log(frequency[:, None] / frequency)) < SAME
-        same &= np.abs(self.shape.conj() @ self.shape.T) ** 2 > ALIKE
-        of_run = (self.run[:, None] == np.arange(self.runs)).astype(float)
-        left = np.ones(len(frequency), dtype=bool)
-        while left.any():
-            times = ((same[:, left] @ of_run[left] > 0).sum(1)) * left
-            most = int(np.argmax(times))
-            if times[most] < OFTEN * self.runs:
-                return
-            yield same[most] & left
-            left &= ~same[most]
+        return alike_poles(np.abs(self.rate), self.shape, self.run, self.runs)
 
     def frequency(self, own: BoolArray) -> float:
         """Of such a mode [Hz]."""

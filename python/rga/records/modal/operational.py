@@ -22,6 +22,7 @@ from rga.lazy import needing_extras
 from rga.records.modal.columns import DAMPING, DURATION, FREQUENCY, TIME
 from rga.records.modal.decay_files import Decay
 from rga.records.modal.formats.entries import table_of_entries
+from rga.records.modal.poles import alike_poles
 from rga.records.record import time_label
 from rga.records.table import Table
 
@@ -35,10 +36,6 @@ LEAST = 20
 #: collinearity and greatest deviation of phases
 STABLE = {"err_fn": 0.01, "err_xi": 0.1, "err_phi": 0.02}
 HARD = {"xi_max": 0.1, "mpc_lim": 0.7, "mpd_lim": 0.3, "CoV_max": 0.2}
-#: of the same mode: frequencies apart, and MAC
-SAME, ALIKE = 0.02, 0.9
-#: share of the orders that find a mode
-OFTEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -121,14 +118,8 @@ def _alike(
     frequency: FloatArray, damping: FloatArray, shape: np.ndarray, order: IntArray, orders: int
 ) -> list[OperationalMode]:
     """Modes of poles that are alike in enough orders: those with the most first."""
-    same = np.abs(np.log(frequency[:, None] / frequency)) < SAME
-    same &= np.abs(shape.conj() @ shape.T) ** 2 > ALIKE
-    left, modes = np.ones(len(frequency), dtype=bool), list[OperationalMode]()
-    while left.any():
-        own = max((one & left for one in same[left]), key=lambda one: len(np.unique(order[one])))
-        found = len(np.unique(order[own])) / orders
-        if found < OFTEN:
-            break
+    modes = []
+    for own in alike_poles(frequency, shape, order, orders):
         middle = shape[own][0]
         turned = shape[own] * np.exp(-1j * np.angle(shape[own] @ middle.conj()))[:, None]
         modes.append(
@@ -136,10 +127,9 @@ def _alike(
                 float(np.median(frequency[own])),
                 float(np.median(damping[own])),
                 turned.mean(0),
-                found,
+                len(np.unique(order[own])) / orders,
             )
         )
-        left &= ~own
     return sorted(modes, key=lambda one: one.frequency)
 
 

@@ -22,7 +22,7 @@ from rga.records.modal.formats.entries import table_of_entries
 from rga.records.table import Table
 
 #: how files begin: HDF5, which NetCDF-4 is, and classic NetCDF
-MARK, CLASSIC = b"\x89HDF\r\n\x1a\n", b"CDF"
+MARK, CLASSIC = b"\x89HDF\r\n\x1a\n", (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 FREQUENCIES, DEVIATIONS, RATIOS, SHAPES = "frequencies", "std_frequencies", "damping", "modeshapes"
 SAMPLES, RATE, CHANNELS = "length", "sample_rate", "channels"
 #: seconds of a unit of time
@@ -36,7 +36,7 @@ _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 
 def is_netcdf(data: bytes) -> bool:
     """Whether a file is NetCDF by its first bytes."""
-    return data.startswith((MARK, CLASSIC))
+    return data.startswith((MARK, *CLASSIC))
 
 
 def read_netcdf(data: bytes, path: Path) -> Table:
