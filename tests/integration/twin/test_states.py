@@ -190,7 +190,9 @@ def test_a_state_of_networks_is_what_it_was(
     sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
 ) -> None:
     model, record, settings = sound
-    chosen = settings | PLAYED | {"level": "C", "inference": "amortised"}
+    # Of 40 rows that say what is usual a thousand rows let an alarm come before the fault does.
+    rare = {"arl0": 10_000.0}
+    chosen = settings | PLAYED | rare | {"level": "C", "inference": "amortised"}
     given_model = SimulationModel(model, Recorded(record, model).station)
     with taken_up(
         model, off(model, record), tmp_path / "twin.sqlite", Settings.model_validate(chosen), 0
