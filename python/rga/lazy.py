@@ -1,5 +1,6 @@
 """Names that a package opens on first use, and packages that only some of them need."""
 
+import gc
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -53,6 +54,25 @@ def needing_extras() -> Iterator[None]:
         if package not in EXTRAS:
             raise
         raise MissingPackageError(package, EXTRAS[package]) from None
+
+
+@contextmanager
+def importing_much() -> Iterator[None]:
+    """No garbage is looked for while a block imports, and later none in what it has made.
+
+    It would be a third of the time that a service takes to start.
+
+    >>> with importing_much():
+    ...     import json
+    >>> gc.isenabled(), gc.get_freeze_count() > 0
+    (True, True)
+    """
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def listing(package: str, names: Iterable[str]) -> Callable[[], list[str]]:

@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
-from fastapi import APIRouter, FastAPI, Request
+from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
@@ -89,12 +89,10 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
 
 def add_routes(app: FastAPI) -> None:
     """Give an application every path of the API and of the pages."""
-    api = APIRouter(prefix=PREFIX)
     parts = (twins, readings, series, past, whatif, commands, alarms, packets, stream, report)
-    for one in parts:
-        api.include_router(one.router)
-    for router in (api, health.router, metrics.router, login, pages):
-        app.include_router(router)
+    for one in (*parts, health, metrics):
+        app.router.routes += one.router.routes
+    app.router.routes += [*login.routes, *pages.routes]
 
 
 def _told_of_mistake(request: Request, error: Exception) -> Response:

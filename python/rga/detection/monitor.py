@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from rga.detection.assumption_checks import assumption_warnings
 from rga.detection.baseline.baseline_model import FEWEST, Reference, unwatched
 from rga.detection.baseline.slow_noise import long_run_variance
 from rga.detection.baseline.stationarity import watched
+from rga.detection.rarity import as_arl0
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
@@ -24,16 +25,11 @@ from rga.numerics.seeds import as_seed
 
 #: latest rows that an alarm is explained by
 ROWS_KEPT = 2048
-#: rows between false alarms, at least and at most
-LEAST, MOST = 100.0, 1e12
 #: sensors go together in a matrix
 MOST_SENSORS = 10_000
 RETURNED = "give the bytes that to_bytes() returned"
 #: lengths of a baseline grow by this factor from one calibration to the next
 LENGTHS = 1.25
-
-SECONDS = {"hour": 3600.0, "day": 86_400.0, "week": 604_800.0, "month": 2_629_800.0,
-           "year": 31_557_600.0}  # fmt: skip
 
 
 class SyncMonitor:
@@ -108,7 +104,7 @@ class SyncMonitor:
             float(np.isnan(rows).mean()),
         )
         telling = max(len(rows) / (1 + fitted), FEWEST / (1.0 - noise.missing))
-        simulated = calibration(noise, _rounded(telling), _arl0(arl0), as_seed(seed))
+        simulated = calibration(noise, _rounded(telling), as_arl0(arl0), as_seed(seed))
         thresholds = simulated.beside(peaks, len(rows), arl0)
         self._begin(reference, thresholds, arl0, seed)
         own = [called[column] for column in np.flatnonzero(self._watched).tolist()]
@@ -131,7 +127,7 @@ class SyncMonitor:
             raise InputError(f"{n_sensors!r} sensors", "n_sensors", remedy)
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
-        simulated = calibration(StreamNoise(n_sensors), None, _arl0(arl0), as_seed(seed))
+        simulated = calibration(StreamNoise(n_sensors), None, as_arl0(arl0), as_seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated.thresholds(arl0), arl0, seed)
         return monitor
 
@@ -252,47 +248,6 @@ class SyncMonitor:
         self._arl0, self._seed = float(arl0), int(seed)
         self._sizes, self._signature = reference.sizes, reference.signature
         self._warnings = ()
-
-
-def rows_between(
-    alarms: float, *, per: Literal["hour", "day", "week", "month", "year"], rate: float
-) -> float:
-    """Rows between false alarms, from how many are tolerated in a time.
-
-    Args:
-        alarms: in that time.
-        per: the time.
-        rate: rows per second [Hz].
-
-    Raises:
-        InputError: a number that is not above 0, no such time, or fewer than 100 rows between
-            alarms or more than 1e12.
-
-    Examples:
-        >>> rows_between(1, per="month", rate=1.0)
-        2629800.0
-    """
-    if not (isinstance(per, str) and per in SECONDS):
-        raise InputError(f"there is no time {per!r}", "per", f"give one of {', '.join(SECONDS)}")
-    for name, value in (("alarms", alarms), ("rate", rate)):
-        if not (_is_number(value) and np.isfinite(value) and value > 0):
-            raise InputError(f"{name} is {value!r}", name, "give a number above 0")
-    rows = SECONDS[per] * rate / alarms
-    if not LEAST <= rows <= MOST:
-        what = f"{alarms!r} alarms per {per} at {rate!r} Hz are {rows:g} rows between alarms"
-        raise InputError(what, "alarms and rate", f"{LEAST:g} to {MOST:g} are possible")
-    return rows
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
-
-
-def _arl0(value: float) -> float:
-    if not (_is_number(value) and LEAST <= value <= MOST):
-        remedy = f"give {LEAST:g} to {MOST:g} rows between false alarms"
-        raise InputError(f"arl0 is {value!r}", "arl0", remedy)
-    return float(value)
 
 
 def _rounded(rows: float) -> int:

@@ -9,29 +9,29 @@ from threading import RLock
 from typing import Self
 
 from rga.errors import InputError
-from rga.files import as_path, made_directory
+from rga.files import as_path
 from rga.given import as_record
-from rga.jobs.run import FILE, concluded
-from rga.model import Model, as_model, model_of_text
-from rga.numerics.seeds import as_seed
+from rga.jobs.begin import begun
+from rga.jobs.run import concluded
+from rga.model import Model, model_of_text
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.frames import is_frame, table_of_frame
 from rga.records.mapping import read_mapping
 from rga.records.sources import find_sources, named_files
 from rga.twin.commands.command import AnyCommand, Command, read_command
-from rga.twin.hardware.inbox import INBOX, Addressee, Inbox
+from rga.twin.hardware.inbox import INBOX, Inbox
 from rga.twin.hardware.interface import LIVE, Station
-from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
+from rga.twin.hardware.live import Live, as_rows, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
 from rga.twin.repository import Repository
+from rga.twin.repository.database import FILE_NAME
 from rga.twin.repository.faults import RepositoryFault
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.restore import standing_of
 from rga.twin.runner import Progress, Running, taken_up
-from rga.twin.settings import Settings, as_settings
+from rga.twin.settings import Settings
 from rga.twin.twin import Twin
-from rga.twin.versions import written
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class LiveTwin:
         self.name, self._seed = known.name, known.seed
         self.model = model_of_text(known.model, str(directory), known.model_sha256)
         self._settings = Settings.model_validate_json(known.settings)
-        self._place = repository or self._directory / FILE
+        self._place = repository or self._directory / FILE_NAME
         self._progress, self._patience = progress, patience
         self._playing, self._held = RLock(), ExitStack()
         self._running: Running | None = None
@@ -312,22 +312,6 @@ class LiveTwin:
                 self._act(partial(self._taken_up().refuse, command, number, str(error)), happened)
 
 
-def _check_holds_no_record(place: Path) -> None:
-    """Whether no record was played in a directory.
-
-    Raises:
-        InputError: one was.
-    """
-    if (place / INBOX).exists() or not (place / FILE).exists():
-        # Where an inbox is, a live twin has begun; its repository may be of an earlier rga.
-        return
-    with Repository.open(place, read_only=True) as repository:
-        if any(not one.identity.source.startswith(LIVE) for one in repository.runs()):
-            raise InputError(
-                "a run of a finished record is here", str(place), "take another directory"
-            )
-
-
 def live(
     model: Model | str | Path,
     directory: str | Path,
@@ -354,43 +338,5 @@ def live(
         InputError: such a model cannot go on for ever, a setting is missing, the seed is none, or
             another twin is there.
     """
-    wanted = addressee_of(as_model(model), as_settings(settings), name, seed)
-    place = made_directory(directory)
-    _check_holds_no_record(place)
-    inbox = Inbox(place)
-    try:
-        known = inbox.name(wanted)
-    finally:
-        inbox.close()
-    check_same(known, wanted, place)
+    place = begun(model, directory, settings=settings, name=name, seed=seed)
     return LiveTwin(place, repository, progress)
-
-
-def addressee_of(model: Model, settings: Settings, name: str | None, seed: int) -> Addressee:
-    """Whom rows of a live twin are for.
-
-    Raises:
-        InputError: such a model cannot go on for ever, a setting is missing, or the seed is none.
-    """
-    seed = as_seed(seed)
-    check_lives(model)
-    settings.pace(None)
-    text, digest = written(model)
-    return Addressee(
-        name or model.name, text, model.sha256 or digest, settings.model_dump_json(), seed
-    )
-
-
-def check_same(known: Addressee, wanted: Addressee, place: Path) -> None:
-    """Whether the twin of a directory is the one that is wanted there.
-
-    Raises:
-        InputError: it is another.
-    """
-    compared = ("name", "model", "settings", "seed")
-    if others := [one for one in compared if getattr(known, one) != getattr(wanted, one)]:
-        raise InputError(
-            f"a live twin that differs in {' and '.join(others)} is here",
-            str(place),
-            "take another directory, or go on with LiveTwin(directory)",
-        )

@@ -12,10 +12,9 @@ from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.calibration.estimator import Learn
 from rga.twin.hardware.inbox import INBOX
 from rga.twin.outcome import Outcome
+from rga.twin.repository.database import FILE_NAME
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
-
-FILE = "twin.sqlite"
 
 
 def run(
@@ -73,7 +72,7 @@ def run(
             "the repository",
             "write postgresql://user@host/database, or leave it out",
         )
-    place = repository or directory / FILE
+    place = repository or directory / FILE_NAME
     with taken_up(model, record, place, settings, seed, progress, learn) as running:
         while running.stage not in ("report", "done"):
             running.step()

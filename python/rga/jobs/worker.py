@@ -9,10 +9,10 @@ from typing import Literal
 from rga.errors import InputError
 from rga.files import as_path
 from rga.jobs.live import LiveTwin
-from rga.jobs.run import FILE
 from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import Event
 from rga.twin.repository import InUse
+from rga.twin.repository.database import FILE_NAME
 from rga.twin.repository.faults import Damaged, RepositoryFault
 from rga.twin.runner import Running
 
@@ -109,7 +109,7 @@ class Worker:
 
 def _written(directory: Path) -> list[int]:
     """When the files of a twin were last written [ns]; 0 for those that are not there."""
-    files = [f"{name}{log}" for name in (INBOX, FILE) for log in ("", "-wal")]
+    files = [f"{name}{log}" for name in (INBOX, FILE_NAME) for log in ("", "-wal")]
     return [_changed(directory / name) for name in files]
 
 

@@ -55,7 +55,7 @@ class Effect(BaseModel):
         profile: "step", or "ramp" from 0 at the onset to full at the end.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
     vocabulary: ClassVar[dict[str, type["Effect"]]] = {}
 
     kind: str

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, model_validator
 
-from rga.detection.monitor import LEAST, MOST
+from rga.detection.rarity import LEAST, MOST
 from rga.operation.alarms.alarm_settings import AlarmSettings
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.packets.packet import MICROSECONDS

@@ -7,7 +7,7 @@ from threading import Lock
 from typing import Any
 
 from rga.errors import InputError
-from rga.jobs.live import live
+from rga.jobs.begin import begun
 from rga.model import load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.disk.forecast import YearlyGrowth, yearly_growth
@@ -39,7 +39,6 @@ class ServedTwin:
     Args:
         settings: of the twin.
         directory: of the twin, which is made.
-        repository: URL of a PostgreSQL database, or None.
         clock: of the service.
 
     Attributes:
@@ -56,20 +55,12 @@ class ServedTwin:
         self,
         settings: TwinSettings,
         directory: Path,
-        repository: str | None,
         clock: ServiceClock,
     ) -> None:
         self.name, self.directory, self._clock = settings.name, directory, clock
         self.model = model = load_model(settings.model)
         run = live_settings(settings.settings, settings.arl0)
-        live(
-            model,
-            directory,
-            settings=run,
-            name=settings.name,
-            seed=settings.seed,
-            repository=repository,
-        ).close()
+        begun(model, directory, settings=run, name=settings.name, seed=settings.seed)
         self._sources = {source_name(one): one for one in settings.source}
         self._mappings = {name: mapping_of(one) for name, one in self._sources.items()}
         self._readers = {

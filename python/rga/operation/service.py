@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rga.operation.telling.teller import Teller
 
 #: how often rows are sealed [s]
-SEAL = 0.2
+SEAL = 0.1
 #: how often it is looked for what is wrong, for notices to be sent, and for what is old [s]
 WATCH, TELL, TIDY = 2.0, 1.0, 3600.0
 #: how long the end of the service waits for a notice that is being sent [s]
@@ -70,8 +70,7 @@ class Service:
         service, clock = configuration.service, clock or ServiceClock()
         self.configuration, self._clock = configuration, clock
         self.twins = {
-            one.name: ServedTwin(one, service.data / one.name, service.repository, clock)
-            for one in configuration.twin
+            one.name: ServedTwin(one, service.data / one.name, clock) for one in configuration.twin
         }
         places = [one.directory for one in self.twins.values()]
         self.room = DiskRoom(service.data, configuration.alarms.disk)

@@ -8,14 +8,21 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from threading import Event, Thread
+from typing import TYPE_CHECKING
 
-from rga.jobs.worker import MOST_FAILURES, Kind, Worker
+from rga.lazy import importing_much
 
-#: how long a worker rests where nothing is due [s]
-REST = 0.2
-#: within what time workers that end at the same twin are taken for its fault [s]
-REMEMBERED = 3600.0
-KINDS: tuple[Kind, ...] = ("watch", "heavy")
+if TYPE_CHECKING:
+    from rga.jobs.worker import Kind
+
+#: how long a worker rests where nothing is due [s]: a row is waited for by people, and each look of
+#: those who do what takes long keeps it from being played for a moment
+RESTS: dict["Kind", float] = {"watch": 0.05, "heavy": 0.5}
+#: how often what a worker tells is read [s]
+HEARD = 0.2
+#: so many workers that end at the same twin within a time [s] are taken for its fault
+MOST_ENDS, REMEMBERED = 3, 3600.0
+KINDS: tuple["Kind", ...] = ("watch", "heavy")
 NONE = -1
 
 
@@ -53,7 +60,7 @@ class Workers:
         return found
 
     @property
-    def at(self) -> dict[Kind, Path]:
+    def at(self) -> dict["Kind", Path]:
         """The twins that are played right now, by the kind of worker."""
         found = [(kind, places, at.value) for kind, (places, at) in list(self._at.items())]
         return {kind: places[number] for kind, places, number in found if number != NONE}
@@ -73,7 +80,7 @@ class Workers:
         for thread in self._threads:
             thread.join()
 
-    def _keep_one(self, kind: Kind) -> None:
+    def _keep_one(self, kind: "Kind") -> None:
         """A worker of a kind, and another when it ends."""
         while not self._ending.is_set():
             places = [one for one in self._places if one not in self._left_alone]
@@ -89,14 +96,16 @@ class Workers:
             if not self._ending.is_set():
                 self._count(places, at.value, process.exitcode)
 
-    def _listen(self, kind: Kind, process: BaseProcess, told: "Connection[object, object]") -> None:
+    def _listen(
+        self, kind: "Kind", process: BaseProcess, told: "Connection[object, object]"
+    ) -> None:
         """Hear which twins fail until the worker ends, or everything does."""
         while process.is_alive() and not self._ending.is_set():
             try:
-                if told.poll(REST):
+                if told.poll(HEARD):
                     self._told[kind] = dict(told.recv())  # type: ignore[call-overload]
             except (EOFError, OSError):
-                self._ending.wait(REST)
+                self._ending.wait(HEARD)
         process.terminate()
         process.join()
         told.close()
@@ -109,20 +118,24 @@ class Workers:
         place, now = places[at], time.monotonic()
         ended = [one for one in self._ended.get(place, []) if now - one < REMEMBERED]
         self._ended[place] = [*ended, now]
-        if len(self._ended[place]) >= MOST_FAILURES:
-            words = f"its worker ended {MOST_FAILURES} times (exit code {code}): is there memory?"
+        if len(self._ended[place]) >= MOST_ENDS:
+            words = f"its worker ended {MOST_ENDS} times (exit code {code}): is there memory?"
             self._left_alone[place] = words
 
 
 def _play(
     places: Sequence[Path],
-    kind: Kind,
+    kind: "Kind",
     repository: str | None,
     has_room: Callable[[], bool],
     at: c_int,
     told: "Connection[object, object]",
 ) -> None:
     """What a worker does until it is ended, or the service is gone."""
+    # The service itself plays no twin, and starts without what that takes.
+    with importing_much():
+        from rga.jobs.worker import Worker
+
     worker, before = Worker(places, [kind], repository, has_room), dict[Path, str]()
     service = multiprocessing.parent_process()
 
@@ -131,7 +144,7 @@ def _play(
 
     while service is None or service.is_alive():
         if not worker.round(looks):
-            time.sleep(REST)
+            time.sleep(RESTS[kind])
         if worker.failed != before:
             before = dict(worker.failed)
             told.send(before)

@@ -1,14 +1,16 @@
 """What a calibration has found otherwise than the model says: structure and sensors."""
 
 from collections.abc import Mapping
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, FiniteFloat
 
 from rga.arrays import FloatArray
-from rga.inference import Joint, Unknowns
 from rga.model import Model
+
+if TYPE_CHECKING:
+    from rga.inference import Joint
 
 
 class Correction(BaseModel):
@@ -28,7 +30,7 @@ class Correction(BaseModel):
     offsets: dict[str, FiniteFloat]
 
     @classmethod
-    def of(cls, found: Joint, zero: Mapping[str, float]) -> Self:
+    def of(cls, found: "Joint", zero: Mapping[str, float]) -> Self:
         """What a joint posterior has found.
 
         Args:
@@ -47,6 +49,8 @@ class Correction(BaseModel):
 
     def corrected(self, model: Model) -> Model:
         """The model with its structure as it was found."""
+        from rga.inference import Unknowns
+
         unknowns = Unknowns(model)
         return unknowns.at(np.array([self.structure[part.name] for part in unknowns.parts]))
 

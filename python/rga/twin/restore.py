@@ -12,7 +12,6 @@ from rga.findings.phrases import effect_words
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
-from rga.twin.digital_twin import TwinState, follow
 from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
@@ -20,6 +19,7 @@ from rga.twin.repository import RunView, StoredMessage, StoredReadings
 from rga.twin.repository.faults import Damaged
 from rga.twin.rows.recent import Stretch, carried_on
 from rga.twin.run_state import Standing
+from rga.twin.state import TwinState, follow
 
 
 def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:

@@ -15,7 +15,6 @@ from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.commands.command import AnyCommand, Rollback
 from rga.twin.commands.proposals import decision
-from rga.twin.digital_twin import TwinState
 from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import History
 from rga.twin.messages.log_text import retold
@@ -30,8 +29,8 @@ from rga.twin.restore import (
     station_of,
     story_of,
 )
-from rga.twin.runner import reopened
 from rga.twin.settings import Inference
+from rga.twin.state import TwinState
 from rga.twin.status import SHOWN, Status
 from rga.twin.versions import extended
 
@@ -268,6 +267,8 @@ def carry_out(place: str | Path, command: AnyCommand, source: str | None = None)
     Raises:
         InputError: it cannot be done, or the repository is in use.
     """
+    from rga.twin.runner import reopened
+
     try:
         with reopened(place, source) as running:
             return running.carry_out(command)

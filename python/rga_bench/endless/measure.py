@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rga.jobs.run import FILE
+from rga.twin.repository.database import FILE_NAME
 from rga_bench.endless.stream import Progress, Stream, settings
 
 #: rows that arrive together
@@ -109,7 +109,7 @@ def _taken_up(directory: Path) -> tuple[float, int, int]:
 
 def _size(directory: Path) -> int:
     """Bytes of the repository, with what stands in its log alone."""
-    connection = sqlite3.connect(directory / FILE)
+    connection = sqlite3.connect(directory / FILE_NAME)
     try:
         pages, bytes_of_page = (
             int(connection.execute(f"PRAGMA {name}").fetchone()[0])

@@ -161,7 +161,7 @@ def _durable(
     chosen = read_configuration(folder / "serve.toml").twin[0]
 
     def taking(until: Callable[[ServedTwin], bool]) -> float:
-        twin = ServedTwin(chosen, folder / "east", None, ServiceClock())
+        twin = ServedTwin(chosen, folder / "east", ServiceClock())
         source = twin.sources()["mqtt"]
         begun = time.perf_counter()
         source.start()

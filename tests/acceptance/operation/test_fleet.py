@@ -16,11 +16,11 @@ import pytest
 
 import rga
 from live_streams import SETTINGS, history, kinds, sinking
-from rga.jobs.run import FILE
 from rga.model import read_model
 from rga.operation.disk.room import DiskRoom
 from rga.operation.workers import Workers
 from rga.records import Record
+from rga.twin.repository.database import FILE_NAME
 from served.made_service import waited_for
 
 #: bridges; `RGA_TEST_FLEET=50` is what is promised
@@ -36,7 +36,7 @@ def waits(place: Path) -> bool:
 
 def plays(place: Path, process: int | None) -> bool:
     """Whether a process holds the lease of a twin."""
-    writer = place / f"{FILE}.writer"
+    writer = place / f"{FILE_NAME}.writer"
     with suppress(OSError):
         return f"process {process} " in writer.read_text("utf-8")
     return False

@@ -16,7 +16,6 @@ from starlette.testclient import TestClient
 import rga
 from live_streams import SETTINGS, assert_same, history, sinking
 from rga.dashboard.app import app_of
-from rga.jobs.run import FILE
 from rga.jobs.worker import MOST_FAILURES, Worker
 from rga.model import read_model
 from rga.operation.alarms.condition import Condition, ConditionKey, Observation
@@ -31,6 +30,7 @@ from rga.operation.service_file import FILE_NAME
 from rga.operation.sources import mqtt
 from rga.records import Record
 from rga.twin.hardware.inbox import INBOX
+from rga.twin.repository.database import FILE_NAME as REPOSITORY
 from rga.twin.repository.faults import DiskFull
 from rga_bench.operation.broker import Mosquitto
 from served.bridges import packets_of
@@ -197,7 +197,7 @@ def begun(measured_bridge: dict[str, Any], record: Record, tmp_path: Path) -> Ca
     return make
 
 
-@pytest.mark.parametrize("file", [FILE, pytest.param(INBOX, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("file", [REPOSITORY, pytest.param(INBOX, marks=pytest.mark.thorough)])
 def test_a_worker_goes_on_where_there_was_no_room(
     begun: Callable[[str], Path], disk: Disk, file: str
 ) -> None:

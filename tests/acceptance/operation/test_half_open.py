@@ -109,7 +109,7 @@ def behind(mosquitto: Mosquitto, measured_bridge: dict[str, Any], tmp_path: Path
         source = f'kind = "mqtt"\nurl = "{url}"\ntopics = ["{TOPIC}"]\nclock = {{ check = false }}'
         write_service(tmp_path, measured_bridge, source=source)
         (settings,) = read_configuration(tmp_path / "serve.toml").twin
-        twin = ServedTwin(settings, tmp_path / "data" / "east", None, ServiceClock())
+        twin = ServedTwin(settings, tmp_path / "data" / "east", ServiceClock())
         broker = twin.sources()["mqtt"]
         broker.start()
         waited_for(lambda: broker.fault is None)

@@ -37,7 +37,7 @@ def test_a_clock_of_the_service_that_is_set_changes_no_row(
     rows = []
     for place, by in (("calm", timedelta(0)), ("set", jump)):
         clock = SetClock()
-        twin = ServedTwin(settings, tmp_path / place, None, clock)
+        twin = ServedTwin(settings, tmp_path / place, clock)
         for number, packet in enumerate(packets_of(record, NOON)):
             assert twin.receive("http", [("http", packet)]) == [("waiting", None)]
             clock.pass_by(600)

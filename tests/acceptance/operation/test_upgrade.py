@@ -13,13 +13,13 @@ from starlette.testclient import TestClient
 import rga
 from live_streams import assert_same, history, sinking
 from rga.dashboard.app import app_of
-from rga.jobs.run import FILE
 from rga.jobs.worker import MOST_FAILURES, Worker
 from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.service import Service
 from rga.records import Record
 from rga.twin.repository import sqlite, tables
+from rga.twin.repository.database import FILE_NAME
 from served.bridges import packets_of
 from served.made_service import write_service
 from served.service_times import NOON
@@ -59,7 +59,7 @@ def test_a_repository_of_before_opens_with_its_history(
     service, worker = served(tmp_path, packets[:BEFORE])
     worker.round()
     service.stop()
-    file = tmp_path / "data" / "east" / FILE
+    file = tmp_path / "data" / "east" / FILE_NAME
     make_older(file)
     service, worker = served(tmp_path, packets[BEFORE:])
     with TestClient(app_of(service), base_url=HERE) as client:
@@ -78,7 +78,7 @@ def test_a_repository_of_before_opens_with_its_history(
     service.stop()
     with rga.LiveTwin(file.parent) as twin:
         found = history(twin)
-    copy = file.with_name(f"{FILE}.revision-0003")
+    copy = file.with_name(f"{FILE_NAME}.revision-0003")
     with sqlite3.connect(copy) as held:
         columns = {one[1] for one in held.execute("PRAGMA table_info(step)")}
         assert held.execute("SELECT count(*) FROM step").fetchone() > (1,)

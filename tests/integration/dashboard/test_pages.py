@@ -13,12 +13,12 @@ from starlette.testclient import TestClient
 
 from live_streams import sinking
 from rga.dashboard.app import app_of
-from rga.jobs.run import FILE
 from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.disk import room as disk_room
 from rga.operation.service import Service
 from rga.records import Record
+from rga.twin.repository.database import FILE_NAME
 from served.bridges import HOSTILE, configured, lived, long_bridge, packets_of, played
 
 from .conftest import HERE, START, page
@@ -206,9 +206,9 @@ def test_data_tells_what_a_year_takes_and_that_there_is_no_room_for_it(
 def test_a_damaged_repository_is_told_and_the_rest_goes_on(
     folder: Path, service: Service, client: TestClient
 ) -> None:
-    place = folder / "data" / "east" / FILE
+    place = folder / "data" / "east" / FILE_NAME
     place.write_bytes(b"no database" * 1000)
-    for other in place.parent.glob(f"{FILE}-*"):
+    for other in place.parent.glob(f"{FILE_NAME}-*"):
         other.unlink()
     fleet = page(client, "/")
     assert "damaged" in fleet

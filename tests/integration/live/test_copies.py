@@ -8,10 +8,10 @@ import pytest
 import rga
 from live_streams import SETTINGS
 from rga.errors import InputError
-from rga.jobs.run import FILE
 from rga.model import Model
 from rga.records import Record
 from rga.twin.hardware.inbox import INBOX
+from rga.twin.repository.database import FILE_NAME
 
 
 def fed(sound: tuple[Model, Record], place: Path, *ends: int) -> None:
@@ -34,7 +34,7 @@ def test_an_inbox_that_is_older_than_its_repository_is_told(
     with rga.LiveTwin(place) as twin, pytest.raises(InputError, match="80 rows were taken in"):
         twin.play()
     # Both of one copy go on.
-    shutil.copy(tmp_path / "copy 0" / FILE, place / FILE)
+    shutil.copy(tmp_path / "copy 0" / FILE_NAME, place / FILE_NAME)
     with rga.LiveTwin(place) as twin:
         twin.feed(sound[1].rows(slice(50, 80)))
         twin.play()

@@ -88,7 +88,7 @@ def test_counts_are_as_scripted(
             "source": [{"kind": "http", "clock": {"check": False}}],
         }
     )
-    twin = ServedTwin(settings, tmp_path / "east", None, ServiceClock())
+    twin = ServedTwin(settings, tmp_path / "east", ServiceClock())
     values = np.random.default_rng(seed).normal(size=(SECONDS, 2))
     times = MIDNIGHT + MICROSECONDS * np.arange(SECONDS)
     record = SentRecord(("D1", "temperature"), times, values, "s")

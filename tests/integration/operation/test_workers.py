@@ -11,9 +11,8 @@ import pytest
 
 import rga
 from live_streams import SETTINGS, assert_same, history, sinking
-from rga.jobs.worker import MOST_FAILURES
 from rga.model import read_model
-from rga.operation.workers import Workers
+from rga.operation.workers import MOST_ENDS, Workers
 from rga.records import Record
 from served.made_service import waited_for
 
@@ -85,7 +84,7 @@ def test_workers_that_are_killed_are_followed_by_others(
         expected = history(twin)
     workers = playing([place])
     # Short of as often as a twin is left alone for.
-    for kind in ("watch", "heavy", "watch")[: MOST_FAILURES - 1]:
+    for kind in ("watch", "heavy", "watch")[: MOST_ENDS - 1]:
         waited_for(lambda: workers.at)
         kill(kind)
     waited_for(lambda: is_played(place))

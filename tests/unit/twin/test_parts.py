@@ -13,13 +13,14 @@ from rga.model import read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.expectation import against_expected, scatter_share
-from rga.twin.digital_twin import DigitalTwin, TwinState, follow
+from rga.twin.digital_twin import DigitalTwin
 from rga.twin.hardware.interface import Packet, Station
 from rga.twin.hardware.recorded import Recorded
 from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
 from rga.twin.novelty import novel, spacing
 from rga.twin.rows.recent import KEPT, RecentRows, Stretch
 from rga.twin.settings import Settings
+from rga.twin.state import TwinState, follow
 from rga.twin.sync.window_rule import WindowRule
 from rga.twin.versions import first_row_under
 

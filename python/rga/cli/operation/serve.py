@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rga.lazy import importing_much
+
 if TYPE_CHECKING:
     from socket import socket
 
@@ -26,9 +28,10 @@ def serve(configuration: ConfigurationFile, check: Check = False, wait: Wait = 5
 
     The exit code of --check is 2 where there is an error; warnings and notes leave it 0.
     """
-    from rga.dashboard.server import listening_socket
-    from rga.operation.configuration import read_configuration
-    from rga.operation.service_file import only_service
+    with importing_much():
+        from rga.dashboard.server import listening_socket
+        from rga.operation.configuration import read_configuration
+        from rga.operation.service_file import only_service
 
     chosen = read_configuration(configuration)
     if check:
@@ -40,9 +43,10 @@ def serve(configuration: ConfigurationFile, check: Check = False, wait: Wait = 5
 
 def _serve(chosen: "Configuration", listening: "socket") -> None:
     """Run a service until somebody ends it."""
-    from rga.dashboard.app import app_of
-    from rga.dashboard.server import server_of
-    from rga.operation.service import Service
+    with importing_much():
+        from rga.dashboard.app import app_of
+        from rga.dashboard.server import server_of
+        from rga.operation.service import Service
 
     service = Service(chosen, said=lambda line: typer.echo(line, err=True))
     app = app_of(service, lambda: server.should_exit)

@@ -14,14 +14,14 @@ def status(place: Place, json: JsonTarget = None) -> None:
     """Show where a run stands: its rows, what it does next, its model version, what happened."""
     from rga.cli.output import write_json
     from rga.errors import InputError
-    from rga.jobs.run import FILE
     from rga.twin import Twin
+    from rga.twin.repository.database import FILE_NAME
 
     if is_service(place):
         _show_served(place, json)
         return
     waiting = _waiting(place)
-    if waiting and not Path(place, FILE).exists():
+    if waiting and not Path(place, FILE_NAME).exists():
         remedy = "play it, or name the URL of its repository"
         raise InputError("no twin has been played here", place, remedy)
     with Twin.open(place) as twin:

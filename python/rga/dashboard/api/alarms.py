@@ -14,6 +14,7 @@ from rga.dashboard.alarm_desk import alarms_of
 from rga.dashboard.api.past import LARGEST
 from rga.dashboard.api.served import (
     OF_A_TWIN,
+    PREFIX,
     Moment,
     TheTwin,
     answering,
@@ -28,7 +29,7 @@ from rga.twin.repository.faults import RepositoryFault
 
 #: alarms of an answer that are closed
 MOST_CLOSED = 1000
-router = APIRouter(tags=["alarms"])
+router = APIRouter(prefix=PREFIX, tags=["alarms"])
 Closed = Annotated[
     int, Query(ge=0, le=MOST_CLOSED, description="How many of the latest closed ones besides.")
 ]

@@ -21,7 +21,7 @@ from rga.twin.restore import standing_of
 
 #: what the service fills in itself
 _FILLED = ("who", "given_at")
-router = APIRouter(tags=["commands"])
+router = APIRouter(prefix=PREFIX, tags=["commands"])
 
 
 def _schema() -> dict[str, Any]:

@@ -15,7 +15,7 @@ from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import TwinNow
 
 #: how often is looked whether something is new, however many follow [s]
-LOOK = 0.5
+LOOK = 0.2
 #: steps, and changes of alarms, that are told of to who comes back; who was away for longer is to
 #: load the page anew
 MOST_MISSED = 1000

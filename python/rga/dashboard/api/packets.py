@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.bounds import IntakeRoom, RateLimit
-from rga.dashboard.api.served import OF_A_TWIN, TheTwin, answering
+from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
 from rga.errors import InputError
 from rga.operation.packets.formats import TYPES, format_of_type
 from rga.operation.packets.packet import MOST_BYTES
@@ -28,7 +28,7 @@ CONTENT_TYPES = (
     *TYPES,
     "application/x-www-form-urlencoded",
 )
-router = APIRouter(tags=["packets"])
+router = APIRouter(prefix=PREFIX, tags=["packets"])
 _BODY = {
     "requestBody": {
         "required": True,

@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.readings import begun_twin
-from rga.dashboard.api.served import OF_A_TWIN, TheTwin
+from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin
 from rga.dashboard.surroundings import SeenTwin
 from rga.findings.phrases import effect_words
 from rga.operation.disk.forecast import DiskForecast
@@ -23,7 +23,9 @@ from rga.twin.repository import RunView
 MOST_ENTRIES = 1000
 #: a number that a database holds
 LARGEST = 2**53
-router = APIRouter(tags=["past"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))])
+router = APIRouter(
+    prefix=PREFIX, tags=["past"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))]
+)
 Last = Annotated[int, Query(ge=1, le=MOST_ENTRIES, description="How many of the latest entries.")]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from fastapi import APIRouter, Depends, HTTPException
 
 from rga.dashboard.access.may import may
-from rga.dashboard.api.served import OF_A_TWIN, TheTwin, begun
+from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, begun
 from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import moment
 from rga.simulation.whatif import HALF_WIDTH
@@ -15,7 +15,9 @@ from rga.twin.twin import Twin
 
 #: rows in which the newest reading of a sensor is looked for
 LOOKED_BACK = 1000
-router = APIRouter(tags=["readings"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))])
+router = APIRouter(
+    prefix=PREFIX, tags=["readings"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))]
+)
 
 
 @dataclass(frozen=True)

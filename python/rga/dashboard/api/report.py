@@ -23,7 +23,7 @@ POLICY = (
     "sandbox allow-scripts allow-downloads; default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline'; img-src data:; font-src data:; frame-ancestors 'none'"
 )
-router = APIRouter(tags=["report"])
+router = APIRouter(prefix=PREFIX, tags=["report"])
 
 
 @dataclass(frozen=True)

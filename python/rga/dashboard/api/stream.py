@@ -9,11 +9,11 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.following import FollowedTwin, StreamPlace
-from rga.dashboard.api.served import TheTwin, told_as_json
+from rga.dashboard.api.served import PREFIX, TheTwin, told_as_json
 
 #: how long a stream rests before it asks for what is new [s]
-REST = 0.25
-router = APIRouter(tags=["stream"])
+REST = 0.1
+router = APIRouter(prefix=PREFIX, tags=["stream"])
 
 
 @router.get(

@@ -10,6 +10,7 @@ from rga.dashboard.access.may import may, may_see_some
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.served import (
     OF_A_TWIN,
+    PREFIX,
     Moment,
     TheTwin,
     answering,
@@ -19,7 +20,7 @@ from rga.dashboard.api.served import (
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.reading.twin_now import TwinNow
 
-router = APIRouter(tags=["twins"])
+router = APIRouter(prefix=PREFIX, tags=["twins"])
 
 
 @dataclass(frozen=True)

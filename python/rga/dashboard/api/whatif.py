@@ -10,13 +10,13 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.readings import begun_twin
-from rga.dashboard.api.served import OF_A_TWIN, TheTwin, answering
+from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
 from rga.simulation.whatif import WhatIf, effect_of
 
 #: answers that are worked out at once; who asks beyond that asks again
 MOST = 2
 _ROOM = Semaphore(MOST)
-router = APIRouter(tags=["what if"])
+router = APIRouter(prefix=PREFIX, tags=["what if"])
 
 
 class WhatIfQuestion(BaseModel):

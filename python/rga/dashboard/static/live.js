@@ -6,7 +6,7 @@ const shown = document.getElementById("live");
 const drawn = new Map();
 // How long to wait for more of what happens at once, and to look without being told [ms]; between
 // two times the server rests so many times as long as one has taken.
-const SOON = 200, LATE = 30_000, REST = 10;
+const SOON = 100, LATE = 30_000, REST = 4;
 let waiting = null, next = 0;
 
 for (const part of document.querySelectorAll("[data-live]")) drawn.set(part.id, said(part));

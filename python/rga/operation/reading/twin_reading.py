@@ -10,13 +10,13 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.jobs.run import FILE
 from rga.operation.reading.overview import Overview, Trace, as_trace
 from rga.operation.reading.twin_now import TwinNow, twin_now
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.hardware.interface import LIVE
 from rga.twin.history import Event
 from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
+from rga.twin.repository.database import FILE_NAME
 from rga.twin.repository.faults import NothingThere
 from rga.twin.restore import standing_of
 from rga.twin.twin import Twin
@@ -62,7 +62,7 @@ class TwinReading:
     def __init__(self, name: str, directory: Path, repository: str | None) -> None:
         self.name = name
         self.place: str | Path = repository or directory
-        self._file = None if repository else directory / FILE
+        self._file = None if repository else directory / FILE_NAME
         self._lock = RLock()
         self._repository: Repository | None = None
         self._twin: Twin | None = None

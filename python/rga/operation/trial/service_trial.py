@@ -7,7 +7,6 @@ from pathlib import Path
 
 from rga.checking.finding import Finding, refused
 from rga.errors import InputError
-from rga.jobs.run import FILE
 from rga.operation.configuration import Configuration, ServiceSettings
 from rga.operation.disk.forecast import YearlyGrowth
 from rga.operation.disk.room import DiskRoom
@@ -30,6 +29,7 @@ from rga.operation.trial.what_came import (
     source_findings,
     what_came,
 )
+from rga.twin.repository.database import FILE_NAME
 
 
 def service_findings(configuration: Configuration, wait: float) -> list[Finding]:
@@ -56,7 +56,7 @@ def service_findings(configuration: Configuration, wait: float) -> list[Finding]
         directory = service.data / twin.name
         found += _of(partial(files[-1].check_goes_on, directory))
         if service.repository is None:
-            found += _repository(f"twin {twin.name!r}", directory / FILE)
+            found += _repository(f"twin {twin.name!r}", directory / FILE_NAME)
     if service.repository is not None:
         found += _repository("[service] repository", service.repository)
     return found + _heard(files, DiskRoom(_existing(service.data), configuration.alarms.disk), wait)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from rga.checking.finding import Finding
-from rga.jobs.live import addressee_of, check_same
+from rga.jobs.begin import addressee_of, check_same
 from rga.model import Model, load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.rows.samples import Reader

@@ -1,11 +1,15 @@
 """What diagnoses propose, and what was decided about it."""
 
+from typing import TYPE_CHECKING
+
 from rga.errors import InputError
 from rga.findings.phrases import effect_words
-from rga.twin.archive import Archive
 from rga.twin.commands.command import PLACE, Reject
 from rga.twin.repository import Proposal, RunView, StoredCommand
 from rga.twin.versions import Effects
+
+if TYPE_CHECKING:
+    from rga.twin.archive import Archive
 
 DECISIONS = ("accept", "reject")
 #: in whose name a proposal is withdrawn that a later diagnosis does not make again
@@ -21,7 +25,7 @@ class Proposals:
         archive: keeps them.
     """
 
-    def __init__(self, archive: Archive) -> None:
+    def __init__(self, archive: "Archive") -> None:
         self._archive = archive
 
     def add(
