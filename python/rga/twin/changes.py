@@ -14,7 +14,7 @@ from rga.model import Model
 from rga.model.effect import seconds
 from rga.model.parameter import listed
 from rga.records import Record
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 from rga.twin.versions import beyond
 
 Progress = Callable[[str, float], None]

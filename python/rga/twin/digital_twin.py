@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga.inference.networks.design_samples import design
 from rga.model import Model
 from rga.simulation import Simulator
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q1, Q3, Q5, R1, R3, R5, Response
 from rga.twin.simulation_model import SimulationModel, mounted

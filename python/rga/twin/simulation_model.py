@@ -9,7 +9,7 @@ from rga.arrays import FloatArray
 from rga.inference.networks.design_samples import design
 from rga.model import Model
 from rga.simulation import Memory, Simulator
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 from rga.twin.messages.queries import R1, R5, Response
 from rga.twin.versions import Effects
 

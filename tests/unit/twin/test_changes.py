@@ -11,8 +11,8 @@ from rga.findings.criteria import Criteria
 from rga.inference import Joint, Rows, Unknowns
 from rga.model import Model, read_model
 from rga.records import Record
+from rga.twin.calibration.correction import Correction
 from rga.twin.changes import diagnose_change
-from rga.twin.correction import Correction
 
 ROWS, CALIBRATED = 40, 25
 

@@ -10,10 +10,10 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference import Joint, TrainingSettings
 from rga.model import ContextVariable
+from rga.twin.calibration.correction import Correction
 from rga.twin.calibration.joint_posterior import JointEstimator, why_not
 from rga.twin.calibration.lesson import Lesson
 from rga.twin.calibration.networks import NetworkEstimator
-from rga.twin.correction import Correction
 from rga.twin.simulation_model import SimulationModel
 
 #: size and steps of the networks, over what settings say: what is left to learn is finer

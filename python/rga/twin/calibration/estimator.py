@@ -6,8 +6,8 @@ from typing import Protocol
 from rga.arrays import FloatArray
 from rga.inference import Joint
 from rga.model import ContextVariable
+from rga.twin.calibration.correction import Correction
 from rga.twin.calibration.lesson import Lesson
-from rga.twin.correction import Correction
 
 
 class ContextEstimator(Protocol):

@@ -21,8 +21,8 @@ from rga.inference.map.laplace import BROKEN, birge_ratio
 from rga.model import ContextVariable, Model
 from rga.model.effect import seconds
 from rga.twin.calibration.blocks import BLOCK, block, blocks
+from rga.twin.calibration.correction import Correction
 from rga.twin.calibration.lesson import Lesson
-from rga.twin.correction import Correction
 from rga.twin.simulation_model import SimulationModel
 
 #: simulated rows that a search for contexts starts from

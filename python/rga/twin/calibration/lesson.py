@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.inference import Rows, TrainingSettings
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 from rga.twin.messages.queries import R4
 from rga.twin.simulation_model import SimulationModel, broken
 

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, mod
 
 from rga.arrays import FloatArray
 from rga.simulation import Memory
-from rga.twin.correction import Correction
+from rga.twin.calibration.correction import Correction
 
 Rows = Annotated[int, Field(ge=0)]
 Flags = NDArray[np.bool_]
