@@ -64,7 +64,7 @@ class Source:
         Raises:
             InputError: one of them is not what was written, or of some columns cannot be.
         """
-        statement = self._select(table, *(columns or table.columns)).where(*where)
+        statement = self._by_other_than_steps(table, *(columns or table.columns)).where(*where)
         with self.reading() as connection:
             found = connection.execute(statement.order_by(table.c.step, table.c.ordinal)).all()
             checked = could_be if columns else whole
@@ -94,10 +94,21 @@ class Source:
         step = self._select(table, func.max(table.c.step)).where(key).scalar_subquery()
         return self.last(table, key, table.c.step == step)
 
-    def last_chunk(self, table: Table) -> Row[Any] | None:
-        """The chunk of the last rows, if any."""
-        first = self._select(table, func.max(table.c.first_row)).scalar_subquery()
-        return self.last(table, table.c.first_row == first)
+    def highest(
+        self, table: Table, column: ColumnElement[Any], *where: ColumnElement[bool]
+    ) -> Row[Any] | None:
+        """The entry with the highest value of a column, of several the one that was stored last.
+
+        Args:
+            table: that is indexed by the column.
+            column: of it.
+            where: conditions on the column.
+        """
+        order = column.desc(), table.c.step.desc(), table.c.ordinal.desc()
+        statement = self._by_other_than_steps(table, *table.columns).where(*where).order_by(*order)
+        with self.reading() as connection:
+            found = connection.execute(statement.limit(1)).one_or_none()
+            return None if found is None else whole(table, found)
 
     def rows(
         self,
@@ -155,7 +166,8 @@ class Source:
         parts: list[list[FloatArray]] = [[] for _ in names]
         for batch in np.split(wanted, range(BATCH, len(wanted), BATCH)):
             keys = [(index[number].step, index[number].ordinal) for number in batch]
-            chunks = self.entries(table, where=[tuple_(c.step, c.ordinal).in_(keys)])
+            steps = c.step.in_({step for step, _ in keys})
+            chunks = self.entries(table, where=[steps, tuple_(c.step, c.ordinal).in_(keys)])
             for number, chunk in zip(batch, chunks, strict=True):
                 inside = stored[owner == number] - chunk.first_row
                 for part, name in zip(parts, names, strict=True):
@@ -174,13 +186,7 @@ class Source:
     def row_at(self, time: float) -> int:
         """Last measured row at or before a time [s]; -1 where there is none."""
         c = tables.measured.c
-        chunk = self.last(
-            tables.measured,
-            c.first_time
-            == self._select(tables.measured, func.max(c.first_time))
-            .where(c.first_time <= time)
-            .scalar_subquery(),
-        )
+        chunk = self.highest(tables.measured, c.first_time, c.first_time <= time)
         if chunk is None:
             return -1
         clock = unpack(chunk.time, chunk.length).ravel()
@@ -192,6 +198,14 @@ class Source:
             return statement
         step = table.c.number if table is tables.step else table.c.step
         return statement.where(step <= self.until)
+
+    def _by_other_than_steps(self, table: Table, *columns: ColumnElement[Any]) -> Select[Any]:
+        """As `_select`, where no database takes its index of steps.
+
+        SQLite would take it before that of rows, and read the whole past for a few of them.
+        """
+        statement = select(*columns).where(table.c.run_id == self.run_id)
+        return statement if self.until is None else statement.where(table.c.step + 0 <= self.until)
 
 
 def joined(chunks: Sequence[Row[Any]], name: str) -> FloatArray:

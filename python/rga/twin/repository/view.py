@@ -93,7 +93,7 @@ class RunView:
     @property
     def rows(self) -> int:
         """Number of rows of the record that were taken in."""
-        last = self._source.last_chunk(tables.measured)
+        last = self._source.highest(tables.measured, tables.measured.c.first_row)
         return 0 if last is None else int(last.first_row + last.length)
 
     def row_at(self, time: float) -> int:
@@ -145,7 +145,8 @@ class RunView:
         """Readings of all sensors, NaN where none are kept any more."""
         if readings.shape[1] or not len(readings):
             return readings
-        first = self._source.last(tables.measured, tables.measured.c.first_row == 0)
+        row = tables.measured.c.first_row
+        first = self._source.highest(tables.measured, row, row <= 0)
         if first is None:
             return readings
         width = unpack(first.readings, first.length).shape[1]
