@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
+from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
@@ -40,6 +41,7 @@ class ModalReadings:
         record: out of which they are.
         time: of the windows on the scale of onsets [s], float[windows].
         contexts: of the windows, float[windows] each.
+        weather: those of them that may move modes beside what the model says.
         log_f: logarithms of the frequencies [ln Hz], float[windows, modes]; NaN where not found.
         scatter: of one window beside the others, as a share of the frequency, float[modes].
         memory: correlation of the errors of a window and the next, float[modes].
@@ -58,6 +60,7 @@ class ModalReadings:
     modes: tuple[str, ...]
     time: FloatArray
     contexts: dict[str, FloatArray]
+    weather: dict[str, FloatArray]
     log_f: FloatArray
     scatter: FloatArray
     memory: FloatArray
@@ -134,6 +137,7 @@ class ModalReadings:
             modes=tuple(names),
             time=record.origin + named.time,
             contexts=contexts,
+            weather=weather(model, contexts),
             log_f=log_f,
             scatter=scatter,
             memory=memory,

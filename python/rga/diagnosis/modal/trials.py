@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from rga import _core
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.standing import brings_mass, without_standing
 from rga.diagnosis.modal.supports import supports
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
@@ -105,6 +107,15 @@ class ModalTrials:
     def follows_contexts(self) -> bool:
         """Whether contexts change the structure, and so more than one of them is looked at."""
         return len(self._structures) > 1
+
+    @cached_property
+    def by_standing(self) -> FloatArray:
+        """What loads that bring their mass change of ln f by the model, float[windows, modes]."""
+        bare = without_standing(self.model)
+        if bare is self.model:
+            return np.zeros(self.readings.log_f.shape)
+        without = ModalTrials(bare, self.readings).predict({})
+        return np.asarray(self.predict({}).log_f - without.log_f)
 
     def predict(self, effects: Mapping[str, Effect]) -> Prediction:
         """The modes with more effects.
@@ -319,7 +330,7 @@ def _of_windows(effect: Effect) -> bool:
 
 def _stands_late(effect: Effect) -> bool:
     """Whether an effect of the model brings a mass that stands there in some windows only."""
-    return effect.onset is not None and effect.swinging() not in (None, effect)
+    return effect.onset is not None and brings_mass(effect)
 
 
 def _partly(effect: Effect, weight: float) -> Effect | None:
