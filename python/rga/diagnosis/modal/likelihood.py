@@ -114,7 +114,10 @@ class ModalLikelihood:
     """
 
     def __init__(
-        self, trials: ModalTrials, level: float = MODEL_ERROR, hidden: BoolArray | None = None
+        self,
+        trials: ModalTrials[ModalReadings],
+        level: float = MODEL_ERROR,
+        hidden: BoolArray | None = None,
     ) -> None:
         self.trials, self.level = trials, level
         self.readings: ModalReadings = trials.readings

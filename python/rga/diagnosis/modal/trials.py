@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from rga import _core
 from rga.arrays import BoolArray, FloatArray, IntArray
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.standing import brings_mass, without_standing
 from rga.diagnosis.modal.supports import supports
 from rga.errors import InputError
@@ -39,6 +40,8 @@ RIGHT = 0.03
 #: modes that are looked at, at most, and states of the structure that are kept
 MOST, KEPT = 200, 512
 
+AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -62,7 +65,7 @@ class Prediction:
     parts: tuple[FloatArray, ...]
 
 
-class ModalTrials:
+class ModalTrials(Generic[AnyWindows]):
     """A model, to which effects are added in turn, under the contexts of measured windows.
 
     The pairing of computed modes with measured ones is made anew for every trial.
@@ -76,7 +79,7 @@ class ModalTrials:
         UnstableStructureError: the structure can move.
     """
 
-    def __init__(self, model: Model, readings: ModalReadings) -> None:
+    def __init__(self, model: Model, readings: AnyWindows) -> None:
         self.model, self.readings = model, readings
         points = list(model.points.values())
         nodes = {name: number for number, name in enumerate(model.nodes)}
@@ -349,7 +352,7 @@ def _partly(effect: Effect, weight: float) -> Effect | None:
     return always.with_values(values)
 
 
-def _contexts(model: Model, needed: set[str], readings: ModalReadings) -> Values:
+def _contexts(model: Model, needed: set[str], readings: AnyWindows) -> Values:
     """Contexts of the windows, float[windows] each; what was not measured lies in its middle."""
     found: Values = {}
     for name, variable in model.context.items():
