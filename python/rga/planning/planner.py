@@ -49,7 +49,8 @@ def plan(
         model: the model that was diagnosed, or its file.
         findings: of its diagnosis, or their file, or the directory that holds it.
         sensors: sensors that may be added.
-        positions: load tests that may be made: places of a truck, and settings of contexts.
+        positions: tests that may be made: places of a truck, settings of contexts, and windows of
+            modes where the findings are of such.
         truck: axle loads [kN] @ spacings [m], such as "60,100@3.5"; None: a truck that strains the
             structure as its own loads do.
         paths: of nodes that share the truck alike; none: those that the model's loads show.

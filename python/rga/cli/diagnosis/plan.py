@@ -24,7 +24,7 @@ Positions = Annotated[
         "--positions",
         metavar="N",
         parser=whole(),
-        help="Load tests, at most: truck positions, set contexts.",
+        help="Tests, at most: truck positions, set contexts, windows of modes.",
     ),
 ]
 TruckText = Annotated[
@@ -60,7 +60,7 @@ def plan(
     seed: Seed = 0,
     json: JsonTarget = None,
 ) -> None:
-    """Choose the sensors and load tests that best separate a cause from its rivals."""
+    """Choose the sensors, load tests and modes that best separate a cause from its rivals."""
     from rga.cli.output import check_targets, write_json
     from rga.cli.progress import shown_progress
     from rga.model import load_model

@@ -98,7 +98,13 @@ class ModalTrials(Generic[AnyWindows]):
             "time": readings.time[chosen]
         }
         self._structures = structures.each_under(self._contexts)
-        self._values = structures.parameters(self._contexts)
+        # What is tried may ask for values of effects that move no mode by themselves.
+        asked = {
+            name: one.values(self._contexts, len(chosen))
+            for name, one in always.items()
+            if not one.at_sensors() and not one.is_load
+        }
+        self._values = asked | structures.parameters(self._contexts)
         reach = [look.near * np.exp(REACH * look.within) for look in readings.looks]
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
