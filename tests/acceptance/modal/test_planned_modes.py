@@ -91,7 +91,7 @@ def test_a_parked_mass_stands_first(seed: int, make: Callable[[], Hidden]) -> No
     assert test.position is not None
     for number in apart(found, "elastic modulus", "mass factor"):
         pair = found.separations[number]
-        assert pair.d_perp > 4.0
+        assert pair.d_perp > 3.5
         assert pair.simulated.won >= 0.9
     # What a clock does to all frequencies a softer structure does as well, with a truck or not.
     (number,) = apart(found, "elastic modulus", "clock rate")

@@ -179,8 +179,12 @@ class ModalSite:
         return scales
 
     def errors(self, effects: Mapping[str, Effect]) -> Errors:
-        """The errors about the structure with effects; modes share none."""
+        """The errors about the structure with effects.
+
+        What the model makes of a known mass is off alike in a mode wherever that stands.
+        """
         now = self._now.predict(effects)
+        shared = np.zeros((self.standing, self.operating + len(self.tests), len(self.sensors)))
         noise = np.full((self.operating + len(self.tests), len(self.sensors)), SILENT)
         noise[: self.operating, self.standing :] = self._shape_errors(now)
         for number, test in enumerate(self.tests):
@@ -190,10 +194,11 @@ class ModalSite:
                 own = np.hypot(self._scatter(self._windows.count) * np.sqrt(2.0), WEATHER)
             else:
                 moved = self._contrast(number, now, effects)[None] / PERCENT
-                both = self._scatter(self._windows.count), self._scatter(PARKED_WINDOWS)
-                own = np.hypot(np.hypot(*both), standing_errors(moved)[0])
+                own = np.hypot(self._scatter(self._windows.count), self._scatter(PARKED_WINDOWS))
+                at = np.arange(self.standing)
+                shared[at, self.operating + number, at] = PERCENT * standing_errors(moved)[0]
             noise[self.operating + number, : self.standing] = PERCENT * own
-        return Errors(noise, np.zeros_like(noise), np.zeros((0, *noise.shape)))
+        return Errors(noise, np.zeros_like(noise), shared)
 
     def _scatter(self, windows: int) -> FloatArray:
         """Of the mean of each frequency over so many windows, as a share of it, float[modes]."""

@@ -76,8 +76,10 @@ class SiteWithModes:
         gauges, modes = (one.errors(effects) for one in (self._gauges, self._modes))
         silent = block_diag(np.ones_like(gauges.noise), np.ones_like(modes.noise)) == 0.0
         noise = np.where(silent, SILENT, block_diag(gauges.noise, modes.noise))
-        shared = np.zeros((len(gauges.shared), *noise.shape))
-        shared[:, : gauges.noise.shape[0], : gauges.noise.shape[1]] = gauges.shared
+        shared = np.array([
+            *(block_diag(one, np.zeros_like(modes.noise)) for one in gauges.shared),
+            *(block_diag(np.zeros_like(gauges.noise), one) for one in modes.shared),
+        ]).reshape(-1, *noise.shape)  # fmt: skip
         return Errors(
             self._ordered(noise),
             self._ordered(block_diag(gauges.gain, modes.gain)),

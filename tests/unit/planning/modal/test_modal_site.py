@@ -104,17 +104,37 @@ def test_how_well_they_would_be_known(model: Model, windows: Windows) -> None:
     assert lane is not None
     tests = [parked(lane, TRUCK)[3], more_windows(windows), *seasons(model, windows, {"air"})]
     planned = site(model, windows, *tests)
-    noise = planned.errors({}).noise[MODES:, :MODES] / 100
+    errors = planned.errors({})
+    noise = errors.noise[MODES:, :MODES] / 100
     so_far, ten = (
         SCATTER / np.sqrt(count * 0.9 * (1 - MEMORY) / (1 + MEMORY)) for count in (COUNT, 10)
     )
     moved = np.abs(planned.measurements({})[MODES, :MODES]) / 100
     off = STANDING_ERROR * np.sqrt(moved * moved.max())
-    np.testing.assert_allclose(noise[0], np.sqrt(so_far**2 + ten**2 + off**2))
+    np.testing.assert_allclose(noise[0], np.hypot(so_far, ten))
+    shared = errors.shared[:, MODES, :MODES] / 100
+    np.testing.assert_allclose(np.abs(shared), np.diag(off))
+    assert not errors.shared[:, MODES + 1 :].any()
     # Together with the windows so far, as many again know what they do to the model's error.
     both = 1.0 / (noise[1] ** -2 + 1.0 / (MODEL_ERROR**2 + so_far**2))
     np.testing.assert_allclose(both, MODEL_ERROR**2 + so_far**2 / 2)
     np.testing.assert_allclose(noise[2], np.hypot(np.sqrt(2) * so_far, WEATHER))
+
+
+def test_what_the_model_makes_of_a_mass_is_off_alike_in_all_places(
+    model: Model, windows: Windows
+) -> None:
+    lane = lane_of_masses(model)
+    assert lane is not None
+    planned = site(model, windows, *parked(lane, TRUCK)[2:4])
+    moved = planned.measurements({})[MODES:, :MODES]
+    shared = planned.errors({}).shared
+    for mode in range(MODES):
+        assert np.count_nonzero(shared[mode]) == 2
+        # Either place tells of the other how far it is off.
+        own = shared[mode, MODES:, mode]
+        size = np.sqrt(np.abs(moved[:, mode]) * np.abs(moved).max(1))
+        np.testing.assert_allclose(own, -STANDING_ERROR * size)
 
 
 def test_of_what_came_late_the_model_errs_by_a_share(model: Model, windows: Windows) -> None:
