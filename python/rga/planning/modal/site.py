@@ -65,6 +65,7 @@ class ModalSite:
         self.added, self.tests, self._late = added, tests, late
         self._windows, self._found = windows, list(windows.modes.values())
         self._looks = _looks(model, windows)
+        self._known: dict[str, bool] = {}
         self.sensors = [
             *(f"frequency of mode {name}" for name in windows.modes),
             *(one.name for one in added),
@@ -129,6 +130,7 @@ class ModalSite:
 
     def doubtful(self, effects: Mapping[str, Effect]) -> list[int]:
         """Tests in which another pairing of the modes is nearly as probable, and now it is not."""
+        effects = self._on_modes(effects)
         now = self._now.predict(effects).doubtful
         return [
             number
@@ -142,12 +144,30 @@ class ModalSite:
         Raises:
             InputError: the effects cannot be simulated.
         """
+        effects = self._on_modes(effects)
         now = self._now.predict(effects)
         shown = np.zeros((self.operating + len(self.tests), len(self.sensors)))
         shown[: self.operating, self.standing :] = self._shape_entries(now)
         for number in range(len(self.tests)):
             shown[self.operating + number, : self.standing] = self._contrast(number, now, effects)
         return shown
+
+    def _on_modes(self, effects: Mapping[str, Effect]) -> dict[str, Effect]:
+        """Those that modes can show, as a diagnosis takes them."""
+        return {name: one for name, one in effects.items() if self._shows(one)}
+
+    def _shows(self, effect: Effect) -> bool:
+        if not (effect.on_modes or (effect.structural and not effect.on_sensors)):
+            return False
+        where = repr((effect.kind, effect.place))
+        if where not in self._known:
+            try:
+                self._now.predict({where: effect})
+            except InputError:  # friction and play leave no mode of their own
+                self._known[where] = False
+            else:
+                self._known[where] = True
+        return self._known[where]
 
     def _contrast(self, number: int, now: Prediction, effects: Mapping[str, Effect]) -> FloatArray:
         """What a test shows of every frequency [%], float[modes]."""
@@ -183,6 +203,7 @@ class ModalSite:
 
         What the model makes of a known mass is off alike in a mode wherever that stands.
         """
+        effects = self._on_modes(effects)
         now = self._now.predict(effects)
         shared = np.zeros((self.standing, self.operating + len(self.tests), len(self.sensors)))
         noise = np.full((self.operating + len(self.tests), len(self.sensors)), SILENT)

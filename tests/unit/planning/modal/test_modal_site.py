@@ -185,6 +185,16 @@ def test_an_accelerometer_reads_the_shape_to_the_scale_of_the_points(
     assert (errors >= np.sqrt(0.025)).all()
 
 
+def test_play_leaves_no_mode_of_its_own_and_shows_in_none(model: Model, windows: Windows) -> None:
+    loose = {"kind": "joint_slip", "member": "b0n-t1n", "slip": 0.001}
+    plain, slack = SOFT, [SOFT, loose]
+    planned = site(model, windows, more_windows(windows))
+    effects = {f"{k}": read_effect(one, "one") for k, one in enumerate(slack)}
+    alone = planned.measurements({"0": read_effect(plain, "one")})
+    np.testing.assert_array_equal(planned.measurements(effects), alone)
+    assert planned.doubtful(effects) == planned.doubtful({})
+
+
 def test_accelerometers_go_where_none_is_and_something_moves(model: Model) -> None:
     places = {(one.point.node, one.point.direction) for one in accelerometers(model) if one.point}
     assert ("b3n", (0.0, 1.0, 0.0)) not in places
