@@ -134,8 +134,7 @@ def _modes(
     windows = findings.windows
     if windows is None:
         return None
-    by_weather = weather(model, dict.fromkeys(model.context, np.zeros(0)))
-    tests = [more_windows(windows), *seasons(model, windows, by_weather)]
+    tests = [more_windows(windows), *seasons(model, windows, weather(model, model.context))]
     if lane is not None and truck is not None:
         tests += parked(lane, truck)
     late = all(cause.onset is not None for cause in findings.causes)

@@ -1,8 +1,12 @@
 """Loads that stand on a structure with their mass while it swings, such as a parked truck."""
 
-from rga.arrays import FloatArray
+from collections.abc import Mapping
+from typing import TypeVar
+
 from rga.model.effect import Effect
 from rga.model.schema import Model
+
+Known = TypeVar("Known")
 
 
 def brings_mass(effect: Effect) -> bool:
@@ -18,7 +22,7 @@ def without_standing(model: Model) -> Model:
     return model.model_copy(update={"effects": kept})
 
 
-def weather(model: Model, contexts: dict[str, FloatArray]) -> dict[str, FloatArray]:
+def weather(model: Model, contexts: Mapping[str, Known]) -> dict[str, Known]:
     """Contexts that may move modes beside what the model says of them.
 
     One that says nothing but where a load of known mass stands, and how much of it, moves them by
@@ -31,4 +35,4 @@ def weather(model: Model, contexts: dict[str, FloatArray]) -> dict[str, FloatArr
             moving |= effect.drivers()
         elif not effect.is_load:
             others |= effect.drivers()
-    return {name: column for name, column in contexts.items() if name not in moving - others}
+    return {name: known for name, known in contexts.items() if name not in moving - others}

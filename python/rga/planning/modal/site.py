@@ -13,6 +13,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import CHANGE_ERROR, MODEL_ERROR, WEATHER, standing_errors
 from rga.diagnosis.modal.readings import ModalWindows
+from rga.diagnosis.modal.standing import weather
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.errors import InputError
 from rga.experiments.candidates import Added, LoadTest, rest
@@ -80,7 +81,7 @@ class ModalSite:
         changes = {"context": contexts, "effects": {**model.effects, **loads}}
         self._model = model.model_copy(update=changes)
         still = rest(self._model) | {
-            name: (low + high) / 2 for name, (low, high) in windows.contexts.items()
+            name: (low + high) / 2 for name, (low, high) in weather(model, windows.contexts).items()
         }
         self._now = self._trials(still)
         self._states = [[self._trials(still | one) for one in self._ends(test)] for test in tests]

@@ -13,7 +13,7 @@ from rga.experiments.candidates import LoadTest
 from rga.experiments.truck import Truck, lane_of_masses
 from rga.findings.schema import FoundMode, Windows
 from rga.model import Effect, Model, read_effect, read_model
-from rga.model.schema import ExpectedMode
+from rga.model.schema import ContextVariable, ExpectedMode
 from rga.planning.modal.candidates import accelerometers, more_windows, parked, seasons
 from rga.planning.modal.site import ModalSite
 
@@ -78,6 +78,26 @@ def test_a_parked_mass_moves_modes_as_a_dense_solution_has_it(
         dense_mode_shapes(read_model(one, "bridge"), MODES)[0] for one in (bridge(), content)
     )
     np.testing.assert_allclose(np.sort(shown), np.sort(100 * np.log(after / before)), rtol=1e-6)
+
+
+def test_so_far_no_truck_stands_though_one_did_in_some_windows(
+    model: Model, windows: Windows
+) -> None:
+    content = {"truck": {"unit": "-", "range": [0.0, 1.0]}}
+    load = {
+        "kind": "nodal_load", "forces": {"b3n": [0, 0, -20e3]}, "factor": {"context": "truck"},
+        "inertia": True,
+    }  # fmt: skip
+    variables = {name: ContextVariable.model_validate(one) for name, one in content.items()}
+    parking = model.model_copy(update={"context": {**model.context, **variables}})
+    parking = parking.extended({"truck": read_effect(load, "truck")})
+    ranges = {**windows.contexts, "truck": (0.0, 1.0)}
+    both = windows.model_copy(update={"contexts": ranges})
+    shown, plain = (
+        site(one, of, more_windows(of)).measurements({})
+        for one, of in ((parking, both), (model, windows))
+    )
+    np.testing.assert_allclose(shown, plain, atol=1e-9)
 
 
 def test_what_a_clock_does_no_parked_mass_shows(model: Model, windows: Windows) -> None:
