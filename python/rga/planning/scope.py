@@ -1,6 +1,7 @@
 """What is planned on: the explanations, and all that could be measured to tell them apart."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,7 +109,7 @@ def scope_of(
         model, working, added, tests, usual_operation(model), lane, truck, LEVELS
     )
     named = rivalries[0][0].effects
-    modes = _modes(model, findings, rivalries[0][0], lane, truck)
+    modes = _modes(model, findings, [one for both in rivalries for one in both], lane, truck)
     site: Site = gauges if modes is None else SiteWithModes(gauges, modes)
     pairs, failed = [], []
     for cause, rival in rivalries:
@@ -128,9 +129,16 @@ def scope_of(
 
 
 def _modes(
-    model: Model, findings: Findings, named: CandidateModel, lane: Lane | None, truck: Truck | None
+    model: Model,
+    findings: Findings,
+    explanations: Sequence[CandidateModel],
+    lane: Lane | None,
+    truck: Truck | None,
 ) -> ModalSite | None:
-    """What could be measured of modes, but for places of a truck that make their names doubtful."""
+    """What could be measured of modes, but for places of a truck that make their names doubtful.
+
+    They do where they do by any of the explanations that can be simulated.
+    """
     windows = findings.windows
     if windows is None:
         return None
@@ -139,6 +147,9 @@ def _modes(
         tests += parked(lane, truck)
     late = all(cause.onset is not None for cause in findings.causes)
     site = ModalSite(model, windows, accelerometers(model), tests, lane, truck, late)
-    doubtful = site.doubtful(named.effects)
+    doubtful: set[int] = set()
+    for one in explanations:
+        with suppress(InputError):
+            doubtful |= set(site.doubtful(one.effects))
     clear = [number for number in range(len(tests)) if number not in doubtful]
     return site.only(range(len(site.added)), clear)

@@ -205,6 +205,22 @@ def test_an_accelerometer_reads_the_shape_to_the_scale_of_the_points(
     assert (errors >= np.sqrt(0.025)).all()
 
 
+def test_a_mass_that_makes_it_doubtful_which_mode_is_which_is_told(
+    model: Model, windows: Windows
+) -> None:
+    lane = lane_of_masses(model)
+    assert lane is not None
+
+    def doubtful(load: float) -> list[int]:
+        truck = Truck((load,), ())
+        tests = parked(lane, truck)
+        return ModalSite(model, windows, [], tests, lane, truck, False).doubtful({})
+
+    assert doubtful(20.0) == []
+    # A third of what the bridge weighs lets modes trade places.
+    assert doubtful(120.0) != []
+
+
 def test_play_leaves_no_mode_of_its_own_and_shows_in_none(model: Model, windows: Windows) -> None:
     loose = {"kind": "joint_slip", "member": "b0n-t1n", "slip": 0.001}
     plain, slack = SOFT, [SOFT, loose]
