@@ -33,7 +33,7 @@ def mixed(
         heavier: what the loads are, over what is said of them.
     """
     content, modal = described(seed, hidden)
-    _add_gauges(content)
+    content = with_gauges(content)
     model = read_model(content, "bridge")
     rng = np.random.default_rng(seed + 2000)
     built = truth(np.random.default_rng(seed + 1000), hidden, late=True)
@@ -59,8 +59,10 @@ def mixed(
     return model, record, modal
 
 
-def _add_gauges(content: dict[str, Any]) -> None:
-    content["sensors"] |= {
+def with_gauges(content: dict[str, Any]) -> dict[str, Any]:
+    """The same model file with gauges and the loads under which they are read."""
+    content = dict(content)
+    content["sensors"] = content["sensors"] | {
         f"D {node}": {
             "kind": "displacement", "node": node, "direction": [0, 0, 1], "unit": "mm",
             "noise": OF_DISPLACEMENT,
@@ -80,3 +82,4 @@ def _add_gauges(content: dict[str, Any]) -> None:
         }
         for name, loaded in LOADS.items()
     }  # fmt: skip
+    return content

@@ -6,6 +6,7 @@ Windows have noise with memory, modes that were not found, and no names.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,22 @@ class Hidden:
     spring: dict[str, float] = field(default_factory=dict)
     clock: float = 1.0
     onset: int = 0
+
+
+@dataclass(frozen=True)
+class Parked:
+    """A truck of known mass, which the model has with the mass that is stated.
+
+    Attributes:
+        mass: on each of the nodes on which it stands [kg].
+        windows: in which it stands there, the first and the one behind the last.
+    """
+
+    mass: dict[str, float]
+    windows: tuple[int, int]
+
+    def stands(self, window: int) -> bool:
+        return self.windows[0] <= window < self.windows[1]
 
 
 def bridge(kind: str = "truss") -> dict[str, Any]:
@@ -114,9 +131,13 @@ def bridge(kind: str = "truss") -> dict[str, Any]:
 
 
 def truth(
-    rng: np.random.Generator, hidden: Hidden, late: bool, structure: Structure = bridge
+    rng: np.random.Generator,
+    hidden: Hidden,
+    late: bool,
+    structure: Structure = bridge,
+    parked: Parked | None = None,
 ) -> Model:
-    """The frame with its scatter, and with what is hidden once it acts."""
+    """The frame with its scatter, with what is hidden once it acts, and with what is parked."""
     content = structure("frame")
     for name, member in content["members"].items():
         section = content["sections"][member["section"]]
@@ -131,6 +152,8 @@ def truth(
     if late:
         for node, mass in hidden.mass.items():
             content["masses"][f"more on {node}"] = {"node": node, "mass": mass}
+    for node, mass in parked.mass.items() if parked is not None else ():
+        content["masses"][f"parked on {node}"] = {"node": node, "mass": mass}
     content["springs"] = [
         {"node": node, "dof": "uy", "stiffness": stiffness}
         for node, stiffness in hidden.spring.items()
@@ -141,15 +164,28 @@ def truth(
     return read_model(content, "truth")
 
 
+def park(content: dict[str, Any], parked: Parked) -> None:
+    """Add to a model file what is parked on the bridge, as a load that brings its mass."""
+    content["context"] = {"truck": {"unit": "-", "range": [0, 1]}}
+    content["effects"] = {
+        "truck": {
+            "kind": "nodal_load",
+            "forces": {node: [0, 0, -9.80665 * mass] for node, mass in parked.mass.items()},
+            "factor": {"context": "truck"}, "inertia": True,
+        }
+    }  # fmt: skip
+
+
 def measured(
     seed: int,
     hidden: Hidden,
     modes: int = 6,
     windows: int = 40,
     structure: Structure = bridge,
+    parked: Parked | None = None,
 ) -> tuple[Model, ModalRecord]:
     """The truss that an analyst holds, and the modes that were found in windows of an hour."""
-    content, record = described(seed, hidden, modes, windows, structure)
+    content, record = described(seed, hidden, modes, windows, structure, parked)
     return read_model(content, content["name"]), record
 
 
@@ -159,6 +195,7 @@ def described(
     modes: int = 6,
     windows: int = 40,
     structure: Structure = bridge,
+    parked: Parked | None = None,
 ) -> tuple[dict[str, Any], ModalRecord]:
     """The same with the truss as a model file."""
     rng = np.random.default_rng(seed)
@@ -166,10 +203,11 @@ def described(
     content = structure("truss")
     points = list(content["points"])
     nodes = list(content["nodes"])
-    states = []
-    for late in (False, True):
+    states = {}
+    for late, stands in product((False, True), (None, *filter(None, [parked]))):
         scatter = np.random.default_rng(seed + 1000)
-        frequencies, shapes = dense_mode_shapes(truth(scatter, hidden, late, structure), modes)
+        built = truth(scatter, hidden, late, structure, stands)
+        frequencies, shapes = dense_mode_shapes(built, modes)
         shapes = shapes.reshape(modes, len(nodes), 6)
         at_points = np.array(
             [
@@ -180,18 +218,24 @@ def described(
                 for shape in shapes
             ]
         )
-        states.append((frequencies * hidden.clock, at_points))
+        states[late, stands is not None] = frequencies * hidden.clock, at_points
     entries: list[tuple[float, float, FloatArray]] = []
     noise = np.zeros(modes)
     for window in range(windows):
         noise = MEMORY * noise + np.sqrt(1 - MEMORY**2) * NOISE * rng.standard_normal(modes)
-        frequencies, shapes = states[window >= hidden.onset]
+        stands = parked is not None and parked.stands(window)
+        frequencies, shapes = states[window >= hidden.onset, stands]
         for mode in rng.permutation(modes):
             if rng.random() < MISSING:
                 continue
             shape = shapes[mode] * rng.choice([-1.0, 1.0]) / np.abs(shapes[mode]).max()
             shape = shape + SHAPE_NOISE * rng.standard_normal(len(points))
             entries.append((3600.0 * window, frequencies[mode] * np.exp(noise[mode]), shape))
+    contexts = {}
+    if parked is not None:
+        there = [parked.stands(round(time / 3600.0)) for time, _, _ in entries]
+        contexts["truck"] = np.array(there, dtype=float)
+        park(content, parked)
     count = len(entries)
     nothing = np.full(count, np.nan)
     record = ModalRecord(
@@ -205,11 +249,11 @@ def described(
         shapes=np.array([shape for _, _, shape in entries]),
         realness=np.ones(count),
         hint=("",) * count,
-        contexts={},
+        contexts=contexts,
         left_out=(),
         sha256="",
     )
-    frequencies, shapes = states[0]
+    frequencies, shapes = states[False, False]
     content["modes"] = {
         f"m{mode}": {
             "near": float(frequencies[mode]), "within": 0.15,

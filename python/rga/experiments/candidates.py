@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rga.experiments.truck import STANDS, Lane, Truck
-from rga.model.schema import Model, Sensor
+from rga.model.schema import MeasuringPoint, Model, Sensor
 from rga.model.structure.arrays import HELD_BY_PLANE
 from rga.model.units import UNITS
 
@@ -24,6 +24,10 @@ USUAL = {
 SENSOR_COST: dict[Kind, float] = {"strain": 1.0, "displacement": 1.5, "rotation": 1.5}
 #: the same of an instrument for a context, of a stand of a truck, and of a setting of contexts
 INSTRUMENT_COST, STAND_COST, SETTING_COST = 0.5, 1.0, 1.0
+#: kinds of what is no sensor of the vocabulary, and of tests
+ACCELEROMETER, INSTRUMENT, LOAD_TEST, SETTING = (
+    "accelerometer", "instrument", "load test", "set context",
+)  # fmt: skip
 #: share of a context's range that a test can bring about, about its middle
 ATTAINABLE = 0.8
 #: noise of a context's measurement where the model states none [its range]
@@ -41,6 +45,7 @@ class Added:
         words: where it goes.
         unit, noise: of a reading.
         cost: in strain gauges put on.
+        point: of an accelerometer, as it would stand in the model; None for anything else.
     """
 
     name: str
@@ -50,16 +55,29 @@ class Added:
     unit: str
     noise: float
     cost: float
+    point: MeasuringPoint | None = None
+
+    @property
+    def kind(self) -> str:
+        """Of the sensor."""
+        if self.point is not None:
+            return ACCELEROMETER
+        return INSTRUMENT if self.sensor is None else self.sensor.kind
+
+    @property
+    def deed(self) -> str:
+        """What is to be done, in words."""
+        return f"{'put' if self.point is not None else 'measure'} {self.words}"
 
     @property
     def advice(self) -> str:
         """As an advice has it."""
-        return f"measuring {self.words}"
+        return self.words if self.point is not None else f"measuring {self.words}"
 
 
 @dataclass(frozen=True)
 class LoadTest:
-    """Two states whose readings are compared.
+    """Two states whose readings, or whose modes, are compared.
 
     Attributes:
         words: what is done.
@@ -67,6 +85,7 @@ class LoadTest:
         position: of the truck in the first [m]; None without a truck.
         cost: in strain gauges put on.
         truck: what it weighs, in words; empty without a truck.
+        kind: of the test.
     """
 
     words: str
@@ -75,6 +94,7 @@ class LoadTest:
     position: float | None
     cost: float
     truck: str = ""
+    kind: str = LOAD_TEST
 
     @property
     def advice(self) -> str:
@@ -147,7 +167,9 @@ def settings(model: Model, needed: Collection[str]) -> list[LoadTest]:
             half = ATTAINABLE * (variable.range[1] - variable.range[0]) / 2
             low, high = middle - half, middle + half
             words = f"{name} at {high:.3g} against {low:.3g} {variable.unit}, a week apart"
-            found.append(LoadTest(words, {name: high}, {name: low}, None, SETTING_COST))
+            found.append(
+                LoadTest(words, {name: high}, {name: low}, None, SETTING_COST, "", SETTING)
+            )
     return found
 
 

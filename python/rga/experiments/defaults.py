@@ -6,6 +6,8 @@ from rga.arrays import FloatArray
 from rga.experiments.candidates import rest
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Values
+from rga.model.effects.loads.load_mass import GRAVITY
+from rga.model.mass_budget import mass_budget
 from rga.model.schema import ContextVariable, Model, Sensor
 from rga.simulation import Simulator
 
@@ -15,8 +17,9 @@ ROWS, INTERVAL, SWING = 24, 7200.0, 0.5
 GOLDEN = (1 + 5**0.5) / 2
 #: states of the loads of a model that are looked at
 STATES = 64
-#: axle load where the model has no load to compare with [kN]; spacing of the axles [m]
-AXLE, SPACING = 50.0, 4.0
+#: where the model has no load to compare with: share of the structure's mass that a truck weighs,
+#: and an axle load where it has no mass either [kN]; spacing of the axles [m]
+PARKED, AXLE, SPACING = 0.05, 50.0, 4.0
 
 
 def usual_operation(model: Model) -> Values:
@@ -31,11 +34,16 @@ def usual_operation(model: Model) -> Values:
 
 
 def usual_truck(model: Model, lane: Lane) -> Truck:
-    """Two like axles that strain no member more than the loads of the model strain the worst."""
+    """Two like axles that strain no member more than the loads of the model strain the worst.
+
+    Where it has no loads, they weigh a small share of the structure.
+    """
     spacing = round(min(SPACING, lane.length / 4), 2)
     truck = Truck((AXLE, AXLE), (spacing,))
     share = strain_share(model, lane, truck)
-    load = AXLE / share if share > 0 else AXLE
+    mass = sum(part.total for part in mass_budget(model))
+    weight = PARKED * mass * GRAVITY / 2e3 if mass > 0 else AXLE
+    load = AXLE / share if share > 0 else weight
     digits = 10.0 ** (np.floor(np.log10(load)) - 1)
     load = float(max(np.floor(load / digits), 1.0) * digits)
     return Truck((load, load), (spacing,))

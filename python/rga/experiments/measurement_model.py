@@ -4,7 +4,7 @@ A measurement is a contrast, so that no zero of a sensor matters: in operation a
 mean over time, in a load test a state less another one.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,6 +47,22 @@ class Errors:
     shared: FloatArray
 
 
+def by_unknowns(
+    measurements: Callable[[Mapping[str, Effect]], FloatArray],
+    one: CandidateModel,
+    about: FloatArray | Sequence[float],
+    shape: tuple[int, int],
+) -> FloatArray:
+    """Derivatives of measurements by the unknowns of an explanation, float[unknowns, *shape]."""
+    centre = np.asarray(about, dtype=float)
+    ahead, behind = (
+        [measurements(one.at(centre + sign * STEP * e)) for e in np.eye(len(centre))]
+        for sign in (1.0, -1.0)
+    )
+    apart = np.array(ahead).reshape(-1, *shape) - np.array(behind).reshape(-1, *shape)
+    return np.asarray(apart / (2 * STEP))
+
+
 class MeasurementModel:
     """A structure with sensors that stand, sensors that could be added, and tests.
 
@@ -77,7 +93,9 @@ class MeasurementModel:
         truck: Truck | None,
         levels: FloatArray,
     ) -> None:
-        self.model, self.added, self.tests = model, added, tests
+        self.model = model
+        self.added: Sequence[Added] = added
+        self.tests: Sequence[LoadTest] = tests
         self._members, self._gains, self._unknown = levels.tolist()
         self.sensors = [*working, *(one.name for one in added)]
         self.standing, self.operating = len(working), len(operation["time"])
@@ -135,7 +153,14 @@ class MeasurementModel:
             return self.model.sensors[self.sensors[column]].unit
         return self.added[column - self.standing].unit
 
-    def state(self, row: int) -> str:
+    def without_test(self, column: int, apart: FloatArray) -> tuple[FloatArray, str]:
+        """The change between the rows of operation in which two differ most, as `Site` has it."""
+        first, last = int(np.argmin(apart)), int(np.argmax(apart))
+        weights = np.zeros(self.operating + len(self.tests))
+        weights[[first, last]] = -1.0, 1.0
+        return weights, f"from {self._state(first)} to {self._state(last)}"
+
+    def _state(self, row: int) -> str:
         """The contexts of a row of operation, in words."""
         shown = (name for name in self.model.context if name in self._simulator.needed)
         return ", ".join(f"{name} {self._table[name][row]:.3g}" for name in shown)
@@ -150,15 +175,8 @@ class MeasurementModel:
 
     def derivatives(self, one: CandidateModel, about: FloatArray | Sequence[float]) -> FloatArray:
         """By the unknowns in standard deviations, float[unknowns, measurements, sensors]."""
-        centre = np.asarray(about, dtype=float)
-        ahead, behind = (
-            [self.measurements(one.at(centre + sign * STEP * e)) for e in np.eye(len(centre))]
-            for sign in (1.0, -1.0)
-        )
-        shape = (0, self.operating + len(self.tests), len(self.sensors))
-        return np.array(ahead).reshape(-1, *shape[1:]) / (2 * STEP) - np.array(behind).reshape(
-            -1, *shape[1:]
-        ) / (2 * STEP)
+        shape = (self.operating + len(self.tests), len(self.sensors))
+        return by_unknowns(self.measurements, one, about, shape)
 
     def errors(self, effects: Mapping[str, Effect]) -> Errors:
         """The errors about the structure with effects."""

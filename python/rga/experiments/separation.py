@@ -16,7 +16,8 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from rga.arrays import FloatArray
 from rga.experiments.explanation import CandidateModel
-from rga.experiments.measurement_model import Errors, MeasurementModel
+from rga.experiments.measurement_model import Errors
+from rga.experiments.site import Site
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Pair:
         return np.asarray(self.predicted[0] - self.predicted[1])
 
 
-def paired(site: MeasurementModel, cause: CandidateModel, rival: CandidateModel) -> Pair:
+def paired(site: Site, cause: CandidateModel, rival: CandidateModel) -> Pair:
     """What two explanations say of everything that could be measured on a site.
 
     Raises:

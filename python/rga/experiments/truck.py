@@ -14,7 +14,7 @@ from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.loads.nodal_load import NodalLoad
-from rga.model.parameter import Driven
+from rga.model.parameter import Driven, listed
 from rga.model.schema import Model
 from rga.model.structure.arrays import HELD_BY_PLANE
 from rga.quantities import plain
@@ -133,8 +133,8 @@ class Lane:
         chosen = np.linspace(0, len(places) - 1, min(most, len(places))).astype(int)
         return [float(place) for place in places[np.unique(chosen)]]
 
-    def effects(self, truck: Truck) -> dict[str, Effect]:
-        """The truck as loads that the contexts FACTOR and POSITION drive."""
+    def effects(self, truck: Truck, inertia: bool = False) -> dict[str, Effect]:
+        """The truck as loads that the contexts FACTOR and POSITION drive, with its mass or not."""
         offsets = [0.0, *np.cumsum(truck.spacings).tolist()]
         return {
             f"{TRUCK} {number + 1}": AxleLoad(
@@ -143,6 +143,7 @@ class Lane:
                 offsets=offsets,
                 factor=Driven(context=FACTOR),
                 position=Driven(context=POSITION),
+                inertia=inertia,
             )
             for number, (path, share) in enumerate(zip(self.paths, self.shares, strict=True))
         }
@@ -182,7 +183,30 @@ def lane_of(model: Model) -> Lane | None:
             of_path[path] = of_path.get(path, 0.0) + abs(sum(one.forces))
         if sum(of_path.values()) > 0:
             return _lane(model, list(of_path), np.array(list(of_path.values())))
-    chains = _loaded_chains(model)
+    loaded = {
+        node
+        for effect in model.effects.values()
+        if isinstance(effect, NodalLoad)
+        for node, force in effect.forces.items()
+        if force[2] < 0
+    }
+    return _along_chains(model, loaded)
+
+
+def lane_of_masses(model: Model) -> Lane | None:
+    """The lane that the masses of a model show where its loads show none, or None.
+
+    Long chains of nodes that carry a mass by themselves, or along the members of a group.
+    """
+    carrying = {one.node for one in model.masses.values() if one.node is not None}
+    for one in model.masses.values():
+        for group in listed(one.group) if one.group is not None else ():
+            carrying |= {node for name in model.groups[group] for node in model.members[name].nodes}
+    return _along_chains(model, carrying)
+
+
+def _along_chains(model: Model, nodes: set[str]) -> Lane | None:
+    chains = _long_chains(model, nodes)
     return replace(_lane(model, chains, np.ones(len(chains))), driven=False) if chains else None
 
 
@@ -197,19 +221,12 @@ def _lane(model: Model, paths: Sequence[tuple[str, ...]], weights: FloatArray) -
     return Lane(tuple(paths), shares, length, tuple(stations[0].tolist()))
 
 
-def _loaded_chains(model: Model) -> list[tuple[str, ...]]:
-    """Long rows of nodes that carry vertical nodal loads, along the longer horizontal axis."""
+def _long_chains(model: Model, nodes: set[str]) -> list[tuple[str, ...]]:
+    """Long rows of nodes, along the longer horizontal axis."""
     held = HELD_BY_PLANE.get(model.plane or "", ())
-    loaded = {
-        node
-        for effect in model.effects.values()
-        if isinstance(effect, NodalLoad)
-        for node, force in effect.forces.items()
-        if force[2] < 0
-    }
-    if 2 in held or len(loaded) < 2:
+    if 2 in held or len(nodes) < 2:
         return []
-    points = {node: model.nodes[node] for node in model.nodes if node in loaded}
+    points = {node: model.nodes[node] for node in model.nodes if node in nodes}
     along = int(np.argmax(np.ptp(np.array(list(points.values()))[:, :2], axis=0)))
     rows: dict[float, list[str]] = {}
     for node in sorted(points, key=lambda node: points[node][along]):

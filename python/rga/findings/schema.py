@@ -136,6 +136,40 @@ class GroupGap(FindingsPart):
     since: float | str | None = None
 
 
+class FoundMode(FindingsPart):
+    """A mode in the windows of a modal record.
+
+    Attributes:
+        frequency: median of the windows [Hz].
+        scatter: of one window beside the others, as a share of the frequency.
+        memory: correlation of the errors of a window and the next.
+        found: share of the windows in which it was found.
+        shape: mean of those measured, of length one, by point; empty: known by its frequency alone.
+        shape_noise: what 1 - MAC of that mean is by noise.
+    """
+
+    frequency: float = Field(gt=0)
+    scatter: float = Field(gt=0)
+    memory: float = Field(ge=0, lt=1)
+    found: float = Field(gt=0, le=1)
+    shape: dict[str, float] = {}
+    shape_noise: float = Field(default=0.0, ge=0)
+
+
+class Windows(FindingsPart):
+    """Windows of time in which modes were looked for.
+
+    Attributes:
+        count: how many.
+        contexts: least and largest value of each context in them.
+        modes: those that were found, by name.
+    """
+
+    count: int = Field(gt=0)
+    contexts: dict[str, Interval] = {}
+    modes: dict[str, FoundMode]
+
+
 class Findings(FindingsPart):
     """What a diagnosis found: the verdict, the causes, the gain, and what stays unexplained.
 
@@ -144,6 +178,7 @@ class Findings(FindingsPart):
         criteria: what decided the verdict; of findings that state none the default ones.
         record_sha256: hash of the file of the record, or of modes that were looked at alone.
         modal_sha256: hash of the file of modes that were looked at beside a record.
+        windows: in which modes were measured, and how well; None without modes.
     """
 
     rga_findings: Literal[1] = 1
@@ -162,6 +197,7 @@ class Findings(FindingsPart):
     model_sha256: str
     record_sha256: str
     modal_sha256: str | None = None
+    windows: Windows | None = None
     versions: dict[str, str] = Field(default_factory=dict)
 
     _account: DiagnosisArrays | None = PrivateAttr(default=None)

@@ -8,8 +8,8 @@ from scipy.linalg import solve_triangular
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.experiments.explanation import CandidateModel
-from rga.experiments.measurement_model import MeasurementModel
 from rga.experiments.separation import covariance
+from rga.experiments.site import Site
 
 #: draws with either explanation true
 DRAWS = 50
@@ -43,9 +43,7 @@ class Judge:
         factor: of their covariance, lower, float[n, n].
     """
 
-    def __init__(
-        self, site: MeasurementModel, one: CandidateModel, present: FloatArray, factor: FloatArray
-    ):
+    def __init__(self, site: Site, one: CandidateModel, present: FloatArray, factor: FloatArray):
         self._site, self._one, self._present, self._factor = site, one, present > 0, factor
         self._precision = one.spread**-2.0
         self._start = np.zeros(len(one.unknowns))
@@ -96,7 +94,7 @@ class Judge:
 
 
 def checked(
-    site: MeasurementModel,
+    site: Site,
     cause: CandidateModel,
     rival: CandidateModel,
     present: FloatArray,

@@ -1,7 +1,6 @@
 """The plan: a model and its findings in, the measurements that separate the rivals out."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -9,16 +8,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga.arrays import FloatArray
-from rga.diagnosis.noise import random_effects
 from rga.errors import InputError
-from rga.experiments.candidates import LoadTest, added_sensors, settings, stands
-from rga.experiments.defaults import strain_share, usual_operation, usual_truck
-from rga.experiments.explanation import CandidateModel
-from rga.experiments.measurement_model import Errors, MeasurementModel
-from rga.experiments.separation import Pair, paired, success
-from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
+from rga.experiments.defaults import strain_share, usual_truck
+from rga.experiments.separation import Pair
+from rga.experiments.site import Site
+from rga.experiments.truck import Lane, Truck, given_lane, lane_of, lane_of_masses, read_truck
 from rga.findings import Findings
-from rga.findings.criteria import Criteria
 from rga.findings.load import as_findings, findings_sha256
 from rga.findings.phrases import effect_words
 from rga.model import Model, as_model
@@ -26,45 +21,15 @@ from rga.numerics.seeds import as_seed
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
-from rga.planning.result import Advised, Plan, PlannedTruck, Separation, SimulatedTrials
-from rga.planning.rivals import rival_pairs, told_apart, working_sensors
+from rga.planning.result import Advised, Plan, PlannedTruck, Ranked, Separation, SimulatedTrials
+from rga.planning.rivals import rival_pairs, told_apart
+from rga.planning.scope import Scope, scope_of
 from rga.planning.selection import Choice, Chooser
 from rga.provenance import versions
-from rga.simulation import Simulator
 
 #: what may be measured where the user says nothing
 SENSORS, POSITIONS = 2, 3
-#: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
-LEVELS = np.array([level.median * np.exp(level.spread) for level in random_effects.LEVELS])
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True)
-class Scope:
-    """What is planned on.
-
-    Attributes:
-        site: with all that could be measured.
-        errors: about the causes.
-        pairs: of causes and rivals.
-        best: d_perp of each pair with everything measured, float[pairs].
-        criteria: those of the findings.
-    """
-
-    site: MeasurementModel
-    errors: Errors
-    pairs: list[Pair]
-    best: FloatArray
-    criteria: Criteria
-
-    def success(self, separation: float) -> float:
-        """Chance that the true explanation of a pair wins by the log-odds asked for."""
-        return success(separation, self.criteria.rivals.log_odds)
-
-    def chooser(self, numbers: Sequence[int]) -> Chooser:
-        """Chooses measurements for some of the pairs."""
-        pairs = [self.pairs[one] for one in numbers]
-        return Chooser(self.site, self.errors, pairs, self.criteria.advice.enough)
 
 
 def plan(
@@ -84,7 +49,8 @@ def plan(
         model: the model that was diagnosed, or its file.
         findings: of its diagnosis, or their file, or the directory that holds it.
         sensors: sensors that may be added.
-        positions: load tests that may be made: places of a truck, and settings of contexts.
+        positions: tests that may be made: places of a truck, settings of contexts, and windows of
+            modes where the findings are of such.
         truck: axle loads [kN] @ spacings [m], such as "60,100@3.5"; None: a truck that strains the
             structure as its own loads do.
         paths: of nodes that share the truck alike; none: those that the model's loads show.
@@ -126,6 +92,8 @@ def _planned(
     progress: Progress,
 ) -> Plan:
     lane = given_lane(model, paths) if paths else lane_of(model)
+    if lane is None and findings.windows is not None:
+        lane = lane_of_masses(model)
     warnings: list[str] = []
     if lane is None and truck is not None:
         raise InputError(
@@ -151,7 +119,7 @@ def _planned(
             sentence="The findings name no cause: there is nothing to tell apart.", **stated
         )
     progress("simulating what could be measured", 0.0)
-    scope = _scope(model, findings, rivalries, lane, truck, warnings)
+    scope = scope_of(model, findings, rivalries, lane, truck, warnings)
     progress("choosing measurements", 0.0)
     chooser = scope.chooser(_separable(scope))
     sensors, tests = advised(findings, scope.site.added, scope.site.tests)
@@ -166,7 +134,7 @@ def _planned(
     separations = []
     for number, pair in enumerate(scope.pairs):
         progress("simulating the plan", number / len(scope.pairs))
-        found = _checked(scope, model, choice, pair, lane, truck, seed + number)
+        found = _checked(scope, choice, pair, lane, truck, seed + number)
         distance, best = float(choice.separation[number]), float(scope.best[number])
         separations.append(
             Separation(
@@ -195,6 +163,7 @@ def _planned(
         tests=made,
         truck=_truck(truck, lane) if driven and truck and lane else None,
         separations=separations,
+        ranked=_ranked(scope, everything),
         advised=beside,
         cost=chooser.cost(choice),
         warnings=warnings,
@@ -202,49 +171,9 @@ def _planned(
     )
 
 
-def _scope(
-    model: Model,
-    findings: Findings,
-    rivalries: Sequence[tuple[CandidateModel, CandidateModel]],
-    lane: Lane | None,
-    truck: Truck | None,
-    warnings: list[str],
-) -> Scope:
-    """Everything that could be measured; pairs that cannot be simulated become warnings."""
-    needed = {
-        context
-        for both in rivalries
-        for one in both
-        for context in Simulator(model).extended(one.effects).needed
-    }
-    tests = settings(model, needed)
-    if lane is not None and truck is not None:
-        tests += stands(lane, truck)
-    working = working_sensors(model, findings)
-    added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-    site = MeasurementModel(
-        model, working, added, tests, usual_operation(model), lane, truck, LEVELS
-    )
-    pairs, failed = [], []
-    for cause, rival in rivalries:
-        try:
-            pairs.append(paired(site, cause, rival))
-        except InputError as error:
-            failed.append(error)
-            warnings.append(f"{rival.words} was left aside: {error}")
-    if not pairs:
-        raise failed[0]
-    errors = site.errors(rivalries[0][0].effects)
-    every = range(site.standing, len(site.sensors))
-    criteria = findings.criteria
-    everything = Chooser(site, errors, pairs, criteria.advice.enough)
-    best = everything.separation(every, range(len(tests)))
-    return Scope(site, errors, pairs, best, criteria)
-
-
 def _beside(
     chooser: Chooser,
-    site: MeasurementModel,
+    site: Site,
     choice: Choice,
     sensors: Sequence[int],
     tests: Sequence[int],
@@ -267,6 +196,28 @@ def _beside(
     ]
 
 
+def _ranked(scope: Scope, everything: Chooser) -> list[Ranked]:
+    """The best measurement of each kind by itself."""
+    site = scope.site
+    best: dict[str, Ranked] = {}
+    for choice in everything.alone():
+        one = (
+            site.added[choice.sensors[0] - site.standing]
+            if choice.sensors
+            else site.tests[choice.tests[0]]
+        )
+        if one.kind not in best:
+            found = choice.separation.tolist()
+            best[one.kind] = Ranked(
+                kind=one.kind,
+                words=one.words,
+                cost=one.cost,
+                d_perp=found,
+                expected=[scope.success(distance) for distance in found],
+            )
+    return list(best.values())
+
+
 def _compared(beside: Sequence[Advised], least: float) -> list[str]:
     """What the findings advise and the plan leaves out, in words."""
     return [
@@ -278,16 +229,19 @@ def _compared(beside: Sequence[Advised], least: float) -> list[str]:
 
 
 def _by_modes(model: Model, findings: Findings) -> list[str]:
-    """That no natural frequency is planned, and what the findings say of them, in words."""
+    """That no natural frequency is planned where none is, and what the findings advise of modes."""
     if not model.modes:
         return []
-    plain = "Only sensors and load tests are planned, natural frequencies and shapes are not."
+    plain = (
+        "Only sensors and load tests are planned, natural frequencies and shapes are not: the "
+        "findings hold no windows of modes. Diagnose the modes (--modal), and plan again."
+    )
     told = (
         f"Of {effect_words(one.effect)} the findings advise, {one.separated_by}."
         for one in findings.causes
         if one.separated_by
     )
-    return [plain, *told]
+    return [*([plain] if findings.windows is None else []), *told]
 
 
 def _separable(scope: Scope) -> list[int]:
@@ -298,7 +252,6 @@ def _separable(scope: Scope) -> list[int]:
 
 def _checked(
     scope: Scope,
-    model: Model,
     choice: Choice,
     pair: Pair,
     lane: Lane | None,
@@ -306,14 +259,8 @@ def _checked(
     seed: int,
 ) -> Checked:
     """The check of a choice on a site that has nothing but what was chosen."""
-    site = scope.site
-    added = [site.added[one - site.standing] for one in sorted(choice.sensors)]
-    tests: list[LoadTest] = [site.tests[one] for one in choice.tests]
-    working = site.sensors[: site.standing]
-    small = MeasurementModel(
-        model, working, added, tests, usual_operation(model), lane, truck, LEVELS
-    )
-    present = np.zeros((small.operating + len(tests), len(small.sensors)))
+    small = scope.chosen(choice, lane, truck)
+    present = np.zeros((small.operating + len(small.tests), len(small.sensors)))
     present[: small.operating, small.standing :] = 1.0
     present[small.operating :] = 1.0
     odds = scope.criteria.rivals.log_odds
@@ -322,7 +269,7 @@ def _checked(
 
 def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -> str:
     site, criteria = scope.site, scope.criteria
-    sentences = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
+    sentences = [site.added[one - site.standing].deed for one in choice.sensors]
     sentences += [f"test: {site.tests[one].words}" for one in choice.tests]
     words = "; ".join(sentences)
     sentences = [f"{words[0].upper()}{words[1:]}."] if sentences else []

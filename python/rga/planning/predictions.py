@@ -7,8 +7,9 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.experiments.candidates import LoadTest
 from rga.experiments.explanation import HALF_WIDTH
-from rga.experiments.measurement_model import Errors, MeasurementModel
+from rga.experiments.measurement_model import Errors
 from rga.experiments.separation import Pair
+from rga.experiments.site import Site
 from rga.planning.result import PlannedSensor, PlannedTest, Says, Telling
 from rga.planning.selection import Choice
 
@@ -17,26 +18,26 @@ SHOWN = 3
 
 
 def planned_sensor(
-    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, column: int
+    site: Site, errors: Errors, pairs: Sequence[Pair], choice: Choice, column: int
 ) -> PlannedSensor:
     """A chosen sensor, with the change of its readings in operation that separates them most."""
     one = site.added[column - site.standing]
     operating = slice(0, site.operating)
-    apart = sum(np.abs(pair.difference[operating, column]) for pair in pairs)
     lead = max(pairs, key=lambda pair: float(np.ptp(pair.difference[operating, column])))
-    first = int(np.argmin(lead.difference[operating, column]))
-    last = int(np.argmax(lead.difference[operating, column]))
-    weights = np.zeros(len(errors.noise))
     tells = []
-    if np.any(apart):
-        weights[[first, last]] = -1.0, 1.0
-        change = f"from {site.state(first)} to {site.state(last)}"
+    if any(np.any(pair.difference[operating, column]) for pair in pairs):
+        weights, change = site.without_test(column, lead.difference[operating, column])
         tells.append(_telling(site, errors, pairs, weights, column, change))
-    tells += [_of_test(site, errors, pairs, test, column) for test in choice.tests]
+    tells += [
+        _of_test(site, errors, pairs, test, column)
+        for test in choice.tests
+        if any(_reads(pair, site.operating + test, column) for pair in pairs)
+    ]
     return PlannedSensor(
         words=one.words,
         sensor=one.sensor.model_dump(mode="json", exclude_defaults=True) if one.sensor else None,
         context=one.context or None,
+        point=one.point.model_dump(mode="json") if one.point else None,
         unit=one.unit,
         noise=one.noise,
         cost=one.cost,
@@ -45,14 +46,18 @@ def planned_sensor(
 
 
 def planned_test(
-    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, number: int
+    site: Site, errors: Errors, pairs: Sequence[Pair], choice: Choice, number: int
 ) -> PlannedTest:
     """A chosen test, with the readings of it that separate them most."""
     test: LoadTest = site.tests[number]
     row = site.operating + number
     spread = np.sqrt(errors.noise[row] ** 2 + errors.gain[row] ** 2)
     apart = np.max([np.abs(pair.difference[row]) for pair in pairs], axis=0)
-    measured = [*range(site.standing), *choice.sensors]
+    measured = [
+        k
+        for k in (*range(site.standing), *choice.sensors)
+        if any(_reads(pair, row, k) for pair in pairs)
+    ]
     order = sorted(measured, key=lambda k: -apart[k] / max(spread[k], 1e-12))
     return PlannedTest(
         words=test.words,
@@ -64,8 +69,13 @@ def planned_test(
     )
 
 
+def _reads(pair: Pair, row: int, column: int) -> bool:
+    """Whether a sensor reads anything in a measurement: gauges read nothing of modes."""
+    return bool(pair.predicted[:, row, column].any() or pair.unknown[:, row, column].any())
+
+
 def _of_test(
-    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], number: int, column: int
+    site: Site, errors: Errors, pairs: Sequence[Pair], number: int, column: int
 ) -> Telling:
     weights = np.zeros(len(errors.noise))
     weights[site.operating + number] = 1.0
@@ -73,7 +83,7 @@ def _of_test(
 
 
 def _telling(
-    site: MeasurementModel,
+    site: Site,
     errors: Errors,
     pairs: Sequence[Pair],
     weights: FloatArray,

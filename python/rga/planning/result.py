@@ -53,6 +53,7 @@ class PlannedSensor(PlanPart):
         words: where it goes.
         sensor: as it would stand in the model; None for an instrument.
         context: that an instrument measures.
+        point: of an accelerometer, as it would stand among the model's points; None for others.
         noise: standard deviation of a reading [unit].
         cost: in strain gauges put on.
         tells: the readings that separate explanations most.
@@ -61,6 +62,7 @@ class PlannedSensor(PlanPart):
     words: str
     sensor: dict[str, Any] | None
     context: str | None
+    point: dict[str, Any] | None = None
     unit: str
     noise: float
     cost: float
@@ -152,6 +154,23 @@ class Advised(PlanPart):
     d_perp: float
 
 
+class Ranked(PlanPart):
+    """The best measurement of a kind, by itself.
+
+    Attributes:
+        kind: of sensor or of test.
+        words: what it is.
+        cost: in strain gauges put on.
+        d_perp, expected: of every two explanations, in the order of the separations.
+    """
+
+    kind: str
+    words: str
+    cost: float
+    d_perp: list[float]
+    expected: list[float]
+
+
 class Plan(PlanPart):
     """What to measure next, so that rival explanations are separated.
 
@@ -159,6 +178,7 @@ class Plan(PlanPart):
         sentence: in plain words.
         sensors, tests: what to measure; both empty where nothing is to be gained.
         separations: of every two explanations.
+        ranked: the best of each kind of measurement by itself, that which confuses least first.
         advised: what the findings advise, of which the choice takes what is as good as any.
         cost: of all, in strain gauges put on.
         budget: sensors and tests that were allowed.
@@ -170,6 +190,7 @@ class Plan(PlanPart):
     tests: list[PlannedTest] = []
     truck: PlannedTruck | None = None
     separations: list[Separation] = []
+    ranked: list[Ranked] = []
     advised: list[Advised] = []
     cost: float = 0.0
     budget: dict[str, int]

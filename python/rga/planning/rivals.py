@@ -54,10 +54,15 @@ def told_apart(findings: Findings, one: str, other: str) -> float | None:
         one, other: in words.
 
     Returns:
-        They, for the first; None where either was not tried as it stands.
+        They, for the first; None where either was not tried as it stands, or where they are rivals
+        by the data alone: what is usual of a modulus, a mass or a clock tells nothing apart.
     """
     odds = {tried.words: tried.log_odds for tried in findings.explanations}
-    return odds[one] - odds[other] if one in odds and other in odds else None
+    if one not in odds or other not in odds:
+        return None
+    apart = odds[one] - odds[other]
+    rivals = any(cause.rivals for cause in findings.causes)
+    return None if rivals and abs(apart) >= findings.criteria.rivals.log_odds else apart
 
 
 def working_sensors(model: Model, findings: Findings) -> list[str]:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.experiments.measurement_model import Errors, MeasurementModel
+from rga.experiments.measurement_model import Errors
 from rga.experiments.separation import Known, Pair, known, nothing, whitened, with_one_more
+from rga.experiments.site import Site
 
 #: rounds of exchange, and the smallest share by which an exchange must lower the confusion
 EXCHANGES, WORTH = 3, 0.01
@@ -42,14 +43,18 @@ class Chooser:
         enough: separation beyond which no more is bought [-].
     """
 
-    def __init__(
-        self, site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], enough: float
-    ) -> None:
+    def __init__(self, site: Site, errors: Errors, pairs: Sequence[Pair], enough: float) -> None:
         self._site, self._errors, self._pairs, self._enough = site, errors, pairs, enough
 
     def separation(self, sensors: Sequence[int], tests: Sequence[int]) -> FloatArray:
         """d_perp of every pair by some measurements, float[pairs]."""
         return np.sqrt([one.square for one in self._known(sensors, tests)])
+
+    def alone(self) -> list[Choice]:
+        """Every sensor and every test by itself, that which confuses least first."""
+        none = self._measured((), ())
+        several = [*self._sensors_more(none), *self._tests_more(none)]
+        return sorted(several, key=self._confused)
 
     def best(
         self,
@@ -80,6 +85,11 @@ class Chooser:
             if len(chosen.tests) < most_tests:
                 options += self._tests_more(chosen)
             better = self._best_buy(chosen, options)
+            if better is None and len(chosen.sensors) < most_sensors:
+                # A test may say nothing but to a sensor that is not there yet.
+                with_test = self._tests_more(chosen) if len(chosen.tests) < most_tests else []
+                together = [both for one in with_test for both in self._sensors_more(one)]
+                better = self._best_buy(chosen, together)
             if better is None:
                 break
             chosen = better

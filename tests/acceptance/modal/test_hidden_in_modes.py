@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from independent.modal_bridge import Hidden, measured
+from independent.modal_bridge import Hidden, Parked, bridge, measured
 from rga.diagnosis import diagnose_modes
 from rga.errors import InputError
 from rga.findings import Findings
@@ -187,6 +187,48 @@ def test_mass_is_not_told_from_modulus_by_modes_alone(seed: int) -> None:
     assert {"elastic_modulus", "added_mass"} <= kinds(findings) <= {*COMMON, "member_stiffness"}
     assert findings.causes[0].onset == BEGUN
     assert "truck of known mass" in findings.causes[0].separated_by
+
+
+GROUPS = {member["groups"][0] for member in bridge()["members"].values()}
+#: of a tenth of what the bridge weighs, on both of its sides
+TRUCK = Parked({"b3n": 2000.0, "b3s": 2000.0}, (20, 40))
+
+
+def heavier_always() -> Hidden:
+    return Hidden(mass=DECK)
+
+
+def softer() -> Hidden:
+    return Hidden(stiffness=dict.fromkeys(GROUPS, 0.85))
+
+
+@cache
+def with_a_truck(seed: int, make: Callable[[], Hidden]) -> Findings:
+    return diagnose_modes(*measured(seed, make(), parked=TRUCK))
+
+
+@pytest.mark.parametrize("make", [heavier_always, softer])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))])
+def test_a_parked_truck_tells_mass_from_modulus(make: Callable[[], Hidden], seed: int) -> None:
+    heavy = {"added_mass", "mass_factor"}
+    alone, told = diagnosed(seed, make), with_a_truck(seed, make)
+    assert alone.verdict == told.verdict == "ambiguous"
+    assert {"elastic_modulus", "added_mass", "mass_factor"} <= kinds(alone) <= COMMON
+    if make is heavier_always:
+        assert kinds(told) <= heavy
+    else:
+        # What a clock does to all frequencies a softer structure does as well, truck or not.
+        assert kinds(told) == {"elastic_modulus", "clock_rate"}
+
+
+@pytest.mark.parametrize("make", [nothing, pytest.param(wrong_clock, marks=thorough)])
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 12))]
+)
+def test_a_parked_truck_is_no_cause(make: Callable[[], Hidden], seed: int) -> None:
+    findings = with_a_truck(seed, make)
+    assert findings.causes == []
+    assert findings.verdict in ("nothing_wrong", "unknown")
 
 
 @thorough

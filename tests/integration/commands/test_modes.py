@@ -124,6 +124,8 @@ def test_a_record_and_modes_are_diagnosed_together(rga: Callable[..., Any], tmp_
     assert "Verdict: nothing_wrong" in done.out
     findings = json.loads((tmp_path / "found" / "findings.json").read_text())
     assert findings["modal_sha256"] not in (None, findings["record_sha256"])
+    assert findings["windows"]["count"] == 40
+    assert findings["windows"]["modes"]["m0"].keys() >= {"frequency", "scatter", "memory", "shape"}
     assert {"f m0", "D b1n"} <= findings["gap"]["by_sensor"].keys()
     report = (tmp_path / "found" / "report.html").read_text()
     assert "<h2>Modes</h2>" in report

@@ -316,6 +316,8 @@ def test_the_command_writes_what_it_says(files: Path, rga: Callable[..., Any]) -
     assert "known weights with the first at" in done.out
     content = json.loads((files / "plan.json").read_text(encoding="utf-8"))
     assert content["seed"] == 4
+    assert "best of its kind" in done.out
+    assert {one["kind"] for one in content["ranked"]} >= {"strain", "load test"}
     assert all(test["words"] in content["sentence"] for test in content["tests"])
     assert content["sentence"] in done.out
     again = rga("plan", files / "model.json", files / "findings.json", "--seed", "4", "--json")

@@ -96,3 +96,11 @@ def test_what_the_record_tells_apart_is_known(model: Model) -> None:
     found = findings(cause(SUNK), explanations=tuple(several))
     assert told_apart(found, "a settlement", "the model as it is") == 88.5
     assert told_apart(found, "a settlement", "another") is None
+
+
+def test_rivals_that_their_priors_alone_tell_apart_are_not_told_apart() -> None:
+    odds = {"a settlement": 90.0, "another": 1.5, "a third": 89.0}
+    several = [{**tried(), "words": k, "log_odds": v} for k, v in odds.items()]
+    found = findings(cause(SUNK, OTHER), explanations=tuple(several))
+    assert told_apart(found, "a settlement", "another") is None
+    assert told_apart(found, "a settlement", "a third") == 1.0

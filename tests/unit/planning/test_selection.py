@@ -58,6 +58,33 @@ def test_two_sensors_are_nearly_those_of_an_exhaustive_search(
     assert min(choice.separation[0], ENOUGH) >= 0.9 * min(best, ENOUGH)
 
 
+def test_alone_everything_stands_by_what_it_separates(
+    bridge: MeasurementModel, chooser: Chooser
+) -> None:
+    several = chooser.alone()
+    assert len(several) == len(bridge.added) + len(bridge.tests)
+    for one in several:
+        assert len(one.sensors) + len(one.tests) == 1
+        assert one.separation == pytest.approx(chooser.separation(one.sensors, one.tests))
+    sizes = [min(one.separation[0], ENOUGH) for one in several]
+    assert (np.diff(sizes) <= 1e-6).all()
+
+
+def test_a_test_and_a_sensor_that_tell_nothing_alone_are_bought_together(
+    bridge: MeasurementModel, errors: Errors, pair: Pair
+) -> None:
+    """Explanations that differ in one reading alone: that of an added sensor in a test."""
+    row, column = bridge.operating + 1, bridge.standing + 2
+    predicted = np.zeros_like(pair.predicted)
+    predicted[0, row, column] = 20 * errors.noise[row, column]
+    apart = replace(pair, predicted=predicted, unknown=np.zeros_like(pair.unknown))
+    chooser = Chooser(bridge, errors, [apart], ENOUGH)
+    assert not chooser.best(1, 0).sensors
+    assert not chooser.best(0, 1).tests
+    choice = chooser.best(1, 1)
+    assert (choice.sensors, choice.tests) == ((column,), (1,))
+
+
 def test_no_budget_buys_nothing(chooser: Chooser) -> None:
     choice = chooser.best(0, 0)
     assert (choice.sensors, choice.tests) == ((), ())

@@ -24,7 +24,7 @@ Positions = Annotated[
         "--positions",
         metavar="N",
         parser=whole(),
-        help="Load tests, at most: truck positions, set contexts.",
+        help="Tests, at most: truck positions, set contexts, windows of modes.",
     ),
 ]
 TruckText = Annotated[
@@ -39,6 +39,8 @@ Paths = Annotated[
     list[str] | None,
     typer.Option("--path", metavar="NODE,NODE,...", help="Where the truck drives; repeatable."),
 ]
+#: chance from which on a measurement by itself is said to tell two explanations apart
+LIKELY = 0.5
 PlanFile = Annotated[
     Path | None,
     typer.Option(
@@ -58,7 +60,7 @@ def plan(
     seed: Seed = 0,
     json: JsonTarget = None,
 ) -> None:
-    """Choose the sensors and load tests that best separate a cause from its rivals."""
+    """Choose the sensors, load tests and modes that best separate a cause from its rivals."""
     from rga.cli.output import check_targets, write_json
     from rga.cli.progress import shown_progress
     from rga.model import load_model
@@ -123,6 +125,19 @@ def _show(result: "Plan") -> None:
             record = "" if one.log_odds is None else f"{one.log_odds:.0f} log-odds"
             cells = (record, f"{one.d_perp:.3g}", expected, share, f"{one.d_perp_at_best:.3g}")
             table.add_row(both, *cells)
+        Console().print(table)
+    if result.ranked:
+        table = Table("best of its kind, by itself", "cost", "tells apart (d_perp)")
+        for measurement in result.ranked:
+            told = [
+                f"{letters[pair.one]} and {letters[pair.other]} ({distance:.2g})"
+                for pair, distance, chance in zip(
+                    result.separations, measurement.d_perp, measurement.expected, strict=True
+                )
+                if chance >= LIKELY
+            ]
+            words = f"{measurement.kind}: {measurement.words}"
+            table.add_row(words, f"{measurement.cost:g}", ", ".join(told) or "nothing")
         Console().print(table)
     typer.echo(result.sentence)
 

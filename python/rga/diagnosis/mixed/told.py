@@ -11,7 +11,13 @@ from rga.diagnosis.assemble.effects import content, estimated_effects, last_effe
 from rga.diagnosis.checks.explanations import Tried
 from rga.diagnosis.mixed.fit import MixedFit
 from rga.diagnosis.mixed.search import MixedFound
-from rga.diagnosis.modal.account import by_sensor, mode_gap, mode_groups, mode_readings
+from rga.diagnosis.modal.account import (
+    by_sensor,
+    mode_gap,
+    mode_groups,
+    mode_readings,
+    windows_of,
+)
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
 from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
@@ -97,6 +103,7 @@ class ToldModes:
                 "causes": causes,
                 "explanations": self._explanations(tried),
                 "modal_sha256": likelihood.readings.record.sha256,
+                "windows": windows_of(likelihood),
                 "unidentifiable": self._unseen(findings),
                 "groups": [*findings.groups, *mode_groups(model, likelihood, *ends)],
                 "warnings": [*findings.warnings, *warnings_of(model, likelihood.readings)],

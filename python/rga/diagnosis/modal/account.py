@@ -8,7 +8,7 @@ from rga.diagnosis.modal.checks import squares
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.trials import Prediction
 from rga.findings.modal_arrays import ModeReading
-from rga.findings.schema import Gap, GroupGap, HeldOut, SensorGap
+from rga.findings.schema import FoundMode, Gap, GroupGap, HeldOut, SensorGap, Windows
 from rga.model import Model
 
 #: of intervals
@@ -80,6 +80,33 @@ def mode_groups(
         )
         for at, mode in enumerate(likelihood.readings.modes)
     ]
+
+
+def windows_of(likelihood: ModalLikelihood) -> Windows:
+    """The windows in which modes were measured, as a plan needs them."""
+    readings = likelihood.readings
+    points = list(likelihood.trials.model.points)
+    known = {name: one[np.isfinite(one)] for name, one in readings.contexts.items()}
+    return Windows(
+        count=len(readings.time),
+        contexts={
+            name: (float(one.min()), float(one.max())) for name, one in known.items() if len(one)
+        },
+        modes={
+            name: FoundMode(
+                frequency=look.near,
+                scatter=float(readings.scatter[at]),
+                memory=float(readings.memory[at]),
+                found=float(readings.found[at]),
+                shape={
+                    points[number]: float(motion)
+                    for number, motion in zip(look.at, look.shape, strict=True)
+                },
+                shape_noise=float(readings.shape_noise[at]),
+            )
+            for at, (name, look) in enumerate(zip(readings.modes, readings.looks, strict=True))
+        },
+    )
 
 
 def mode_readings(

@@ -9,6 +9,7 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.fit import predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
@@ -40,7 +41,7 @@ class ModalProspect:
     largest: float
 
 
-def modal_hypotheses(trials: ModalTrials) -> list[Hypothesis]:
+def modal_hypotheses(trials: ModalTrials[ModalReadings]) -> list[Hypothesis]:
     """All hypotheses that natural frequencies and mode shapes can show.
 
     Kinds that follow contexts are there where the structure is looked at under several.

@@ -92,7 +92,7 @@ def drifting(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
 def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Prediction) -> list[str]:
     """In words: why a small change that begins late may be the weather."""
     late = any(one.onset is not None for one in causes)
-    if not late or any(True for _ in scaled_contexts(readings.contexts)):
+    if not late or any(True for _ in scaled_contexts(readings.weather)):
         return []
     moved = float(np.abs(np.expm1(np.ptp(after.log_f, axis=0))).max())
     if moved >= BEYOND_WEATHER:

@@ -7,7 +7,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga.diagnosis.assemble.effects import cause_name, content
-from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings
+from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
@@ -118,6 +118,7 @@ def _diagnosed(
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,
+        windows=windows_of(likelihood),
         versions=versions(),
     )
     findings._modes = ModalArrays(

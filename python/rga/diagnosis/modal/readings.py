@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
+from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
@@ -32,19 +33,34 @@ MOST_MEMORY = 0.95
 
 
 @dataclass(frozen=True)
-class ModalReadings:
-    """Modes of a record by name.
+class ModalWindows:
+    """Windows of time in which modes are looked at.
 
     Attributes:
         modes: names of those that were found, in the order of the model.
-        record: out of which they are.
         time: of the windows on the scale of onsets [s], float[windows].
         contexts: of the windows, float[windows] each.
         log_f: logarithms of the frequencies [ln Hz], float[windows, modes]; NaN where not found.
-        scatter: of one window beside the others, as a share of the frequency, float[modes].
-        memory: correlation of the errors of a window and the next, float[modes].
         looks: what each mode looks like: median frequency, and the mean of the measured shapes,
             which has length one; without points where no shape was measured.
+    """
+
+    modes: tuple[str, ...]
+    time: FloatArray
+    contexts: dict[str, FloatArray]
+    log_f: FloatArray
+    looks: tuple[Expected, ...]
+
+
+@dataclass(frozen=True)
+class ModalReadings(ModalWindows):
+    """Modes of a record by name.
+
+    Attributes:
+        record: out of which they are.
+        weather: contexts that may move modes beside what the model says.
+        scatter: of one window beside the others, as a share of the frequency, float[modes].
+        memory: correlation of the errors of a window and the next, float[modes].
         shape_noise: what 1 - MAC of the mean shape is by noise, float[modes].
         found: share of the windows in which each mode was found, float[modes].
         doubtful: windows of which another pairing is nearly as probable, where they are many.
@@ -55,13 +71,9 @@ class ModalReadings:
     """
 
     record: ModalRecord
-    modes: tuple[str, ...]
-    time: FloatArray
-    contexts: dict[str, FloatArray]
-    log_f: FloatArray
+    weather: dict[str, FloatArray]
     scatter: FloatArray
     memory: FloatArray
-    looks: tuple[Expected, ...]
     shape_noise: FloatArray
     found: FloatArray
     doubtful: int
@@ -134,6 +146,7 @@ class ModalReadings:
             modes=tuple(names),
             time=record.origin + named.time,
             contexts=contexts,
+            weather=weather(model, contexts),
             log_f=log_f,
             scatter=scatter,
             memory=memory,

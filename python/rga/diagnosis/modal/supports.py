@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.readings import ModalWindows
 
 #: windows that stand for all of which only one context tells the structure
 SUPPORTS = 7
@@ -14,7 +14,7 @@ FEW, COMBINATIONS = 4, 12
 
 
 def supports(
-    readings: ModalReadings, driving: Sequence[FloatArray], standing: Sequence[FloatArray]
+    readings: ModalWindows, driving: Sequence[FloatArray], standing: Sequence[FloatArray]
 ) -> tuple[IntArray, FloatArray, int]:
     """Windows that stand for all, and the share of each in every window.
 
@@ -68,7 +68,7 @@ def _along(column: FloatArray, own: BoolArray) -> list[tuple[int, FloatArray]]:
     ]
 
 
-def _told(column: FloatArray, readings: ModalReadings) -> float:
+def _told(column: FloatArray, readings: ModalWindows) -> float:
     """How much a context says of the frequencies: sum of squared correlations."""
     total = 0.0
     for log_f in readings.log_f.T:

@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from rga import _core
 from rga.arrays import BoolArray, FloatArray, IntArray
-from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.readings import ModalWindows
+from rga.diagnosis.modal.standing import brings_mass, without_standing
 from rga.diagnosis.modal.supports import supports
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, blend
@@ -37,6 +40,8 @@ RIGHT = 0.03
 #: modes that are looked at, at most, and states of the structure that are kept
 MOST, KEPT = 200, 512
 
+AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -60,7 +65,7 @@ class Prediction:
     parts: tuple[FloatArray, ...]
 
 
-class ModalTrials:
+class ModalTrials(Generic[AnyWindows]):
     """A model, to which effects are added in turn, under the contexts of measured windows.
 
     The pairing of computed modes with measured ones is made anew for every trial.
@@ -74,7 +79,7 @@ class ModalTrials:
         UnstableStructureError: the structure can move.
     """
 
-    def __init__(self, model: Model, readings: ModalReadings) -> None:
+    def __init__(self, model: Model, readings: AnyWindows) -> None:
         self.model, self.readings = model, readings
         points = list(model.points.values())
         nodes = {name: number for number, name in enumerate(model.nodes)}
@@ -93,7 +98,13 @@ class ModalTrials:
             "time": readings.time[chosen]
         }
         self._structures = structures.each_under(self._contexts)
-        self._values = structures.parameters(self._contexts)
+        # What is tried may ask for values of effects that move no mode by themselves.
+        asked = {
+            name: one.values(self._contexts, len(chosen))
+            for name, one in always.items()
+            if not one.at_sensors() and not one.is_load
+        }
+        self._values = asked | structures.parameters(self._contexts)
         reach = [look.near * np.exp(REACH * look.within) for look in readings.looks]
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
@@ -105,6 +116,15 @@ class ModalTrials:
     def follows_contexts(self) -> bool:
         """Whether contexts change the structure, and so more than one of them is looked at."""
         return len(self._structures) > 1
+
+    @cached_property
+    def by_standing(self) -> FloatArray:
+        """What loads that bring their mass change of ln f by the model, float[windows, modes]."""
+        bare = without_standing(self.model)
+        if bare is self.model:
+            return np.zeros(self.readings.log_f.shape)
+        without = ModalTrials(bare, self.readings).predict({})
+        return np.asarray(self.predict({}).log_f - without.log_f)
 
     def predict(self, effects: Mapping[str, Effect]) -> Prediction:
         """The modes with more effects.
@@ -319,7 +339,7 @@ def _of_windows(effect: Effect) -> bool:
 
 def _stands_late(effect: Effect) -> bool:
     """Whether an effect of the model brings a mass that stands there in some windows only."""
-    return effect.onset is not None and effect.swinging() not in (None, effect)
+    return effect.onset is not None and brings_mass(effect)
 
 
 def _partly(effect: Effect, weight: float) -> Effect | None:
@@ -338,7 +358,7 @@ def _partly(effect: Effect, weight: float) -> Effect | None:
     return always.with_values(values)
 
 
-def _contexts(model: Model, needed: set[str], readings: ModalReadings) -> Values:
+def _contexts(model: Model, needed: set[str], readings: AnyWindows) -> Values:
     """Contexts of the windows, float[windows] each; what was not measured lies in its middle."""
     found: Values = {}
     for name, variable in model.context.items():

@@ -42,7 +42,7 @@ def test_what_can_hardly_be_meant_is_told() -> None:
 def test_a_small_late_change_may_be_the_weather_unless_that_was_measured(
     air: list[float] | None, doubted: bool
 ) -> None:
-    readings: Any = SimpleNamespace(contexts={} if air is None else {"air": np.array(air)})
+    readings: Any = SimpleNamespace(weather={} if air is None else {"air": np.array(air)})
     late: Any = SimpleNamespace(onset=3600.0)
     after: Any = SimpleNamespace(log_f=np.array([[0.0], [0.0], [0.01], [0.01]]))
     assert bool(weather(readings, [late], after)) is doubted

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from independent.modal_bridge import Hidden, measured
+from independent.modal_bridge import Hidden, Parked, measured
 from rga.diagnosis.modal.fit import fitted
-from rga.diagnosis.modal.likelihood import CHANGE_ERROR, ModalLikelihood
+from rga.diagnosis.modal.likelihood import CHANGE_ERROR, ModalLikelihood, standing_errors
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.model.effects.members.elastic_modulus import ElasticModulus
@@ -60,6 +60,39 @@ def test_squares_and_freedom_are_those_of_the_dense_covariance(
     residual = likelihood.residual(prediction)
     np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
     np.testing.assert_allclose(likelihood.freedom(prediction), freedom, rtol=1e-9, atol=1e-12)
+
+
+@pytest.fixture(scope="module")
+def with_truck() -> ModalLikelihood:
+    truck = Parked({"b3n": 1000.0, "b3s": 1000.0}, (10, 25))
+    model, record = measured(3, Hidden(), modes=4, windows=25, parked=truck)
+    return ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+
+
+def test_where_a_truck_stands_is_no_weather(with_truck: ModalLikelihood) -> None:
+    readings, trials = with_truck.readings, with_truck.trials
+    assert list(readings.contexts) == ["truck"]
+    assert readings.weather == {}
+    np.testing.assert_allclose(trials.by_standing[:10], 0.0, atol=1e-12)
+    assert (trials.by_standing[10:] < 0.0).all()
+    # The bridge without it is the one in which it does not stand.
+    prediction = trials.predict({})
+    moved = prediction.log_f[-1] - prediction.log_f[0]
+    np.testing.assert_allclose(trials.by_standing[-1], moved, atol=1e-12)
+
+
+def test_what_a_truck_changes_is_known_to_a_share_of_it(with_truck: ModalLikelihood) -> None:
+    prediction = with_truck.trials.predict({})
+    errors = standing_errors(with_truck.trials.by_standing)
+    square = 0.0
+    for mode in range(4):
+        off = with_truck.readings.log_f[:, mode] - prediction.log_f[:, mode]
+        seen = np.isfinite(off)
+        own = dense(with_truck, mode, 0.0) + np.outer(errors[seen, mode], errors[seen, mode])
+        square += float(off[seen] @ np.linalg.solve(own, off[seen]))
+        square += float((with_truck.shape_off(mode, prediction) ** 2).sum())
+    residual = with_truck.residual(prediction)
+    np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
 
 
 def test_shape_error_is_what_mac_lacks(likelihood: ModalLikelihood) -> None:

@@ -1,0 +1,1 @@
+"""Measurements of modes that could be made: accelerometers, windows, seasons, parked masses."""
