@@ -36,6 +36,22 @@ def test_a_peer_agrees(name: str, truss: Any) -> None:
     np.testing.assert_allclose(peer(name, swinging).frequencies(factors), ours, rtol=1e-9)
 
 
+@pytest.mark.parametrize("few", [True, False])
+def test_samples_side_by_side_agree_with_dense_matrices(few: bool) -> None:
+    swinging = Swinging.of(box_bridge(seed=4))
+    structure, masses = swinging.truss.structure, swinging.masses
+    count = len(structure["ends"]) + len(structure["spring_stiffness"])
+    draw = np.random.default_rng(6)
+    varied = draw.choice(count, 10, replace=False) if few else np.arange(count)
+    factors = np.ones((9, count))
+    factors[:, varied] = draw.uniform(0.4, 1.8, (9, len(varied)))
+    batch = _core.ModalBatch(structure, masses, varied, 8, np.zeros(0, np.int64))
+    squares, _ = batch.modes(np.ascontiguousarray(factors[:, varied]), 2)
+    dense = Dense(swinging, 8)
+    for own, sample in zip(squares, factors, strict=True):
+        np.testing.assert_allclose(hertz(own), dense.frequencies(sample), rtol=1e-9)
+
+
 def test_a_peer_that_is_wrong_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     right = ShiftInvert.frequencies
     monkeypatch.setattr(

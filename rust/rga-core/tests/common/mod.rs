@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 pub mod grid;
+pub mod masses;
 pub mod samples;
 
 use rga_core::{Array, Loads, OutputKind, Outputs, Result, Structure, respond};
