@@ -4,6 +4,7 @@
 pub mod grid;
 pub mod masses;
 pub mod samples;
+pub mod swinging;
 
 use rga_core::{Array, Loads, OutputKind, Outputs, Result, Structure, respond};
 
