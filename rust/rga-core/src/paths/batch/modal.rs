@@ -252,7 +252,7 @@ struct Sweep<'a> {
     threads: usize,
 }
 
-impl WithSimd for Sweep<'_> {
+impl<'a> WithSimd for Sweep<'a> {
     type Output = Result<()>;
 
     #[inline(always)]
@@ -265,25 +265,22 @@ impl WithSimd for Sweep<'_> {
             threads,
         } = self;
         let prepare = || {
-            let ways = batch.ways.iter();
-            let iterations = ways
-                .map(|way| Iteration::new(lanes, &way.swinging))
-                .collect();
             Ok(Scratch {
-                iterations,
+                iterations: batch.ways.iter().map(|_| None).collect(),
                 given: vec![lanes.splat(0.0); batch.varied.len()],
             })
         };
-        let work = |scratch: &mut Scratch<Packs<S, 1>>, rows: Range<usize>, results: &mut [f64]| {
-            lanes.vectorize(Chunk {
-                lanes,
-                batch,
-                factors,
-                scratch,
-                rows,
-                results,
-            })
-        };
+        let work =
+            |scratch: &mut Scratch<'a, Packs<S, 1>>, rows: Range<usize>, results: &mut [f64]| {
+                lanes.vectorize(Chunk {
+                    lanes,
+                    batch,
+                    factors,
+                    scratch,
+                    rows,
+                    results,
+                })
+            };
         let width = batch.width().max(1);
         in_chunks(results, width, CHUNK, threads, prepare, work)
     }
@@ -291,8 +288,8 @@ impl WithSimd for Sweep<'_> {
 
 /// What a thread needs for its samples.
 struct Scratch<'a, L: Lanes> {
-    /// Of each way.
-    iterations: Vec<Iteration<'a, L>>,
+    /// Of each way, once a sample has asked for it.
+    iterations: Vec<Option<Iteration<'a, L>>>,
     /// Factors of the samples at hand.
     given: Vec<L::Numbers>,
 }
@@ -300,7 +297,7 @@ struct Scratch<'a, L: Lanes> {
 /// Samples that a thread takes at a time.
 struct Chunk<'a, 'b, L: Lanes> {
     lanes: L,
-    batch: &'a ModalBatch,
+    batch: &'b ModalBatch,
     factors: Array<'a, f64>,
     scratch: &'a mut Scratch<'b, L>,
     rows: Range<usize>,
@@ -332,6 +329,8 @@ impl<L: Lanes> NullaryFnOnce for Chunk<'_, '_, L> {
                 if counted & all == all {
                     break;
                 }
+                let iteration =
+                    iteration.get_or_insert_with(|| Iteration::new(lanes, &way.swinging));
                 let elements = way.swinging.weights.elements;
                 iteration.weights[..elements].fill(lanes.splat(1.0));
                 for (&weight, factor) in way.weights.iter().zip(given.iter()) {
