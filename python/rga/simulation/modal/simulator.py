@@ -138,13 +138,13 @@ class ModalSimulator:
         samples = self._structures.samples(contexts)
         if samples is None:
             return None
-        start, factors = samples.start, samples.factors
+        structure, factors = samples.start.arrays, samples.factors
         found = np.empty((len(factors), len(self.model.modal_sensors)))
         left, count = np.arange(len(factors)), len(self.expected) + BEYOND
         dofs = (6 * self._nodes[:, None] + np.arange(3)).ravel()
         while len(left):
             try:
-                batch = _core.ModalBatch(start.arrays, start.masses, samples.elements, count, dofs)
+                batch = _core.ModalBatch(structure, samples.masses, samples.elements, count, dofs)
                 squares, moving = batch.modes(factors[left])
             except (_core.UnstableStructure, _core.InvalidInput):
                 return None  # a structure by itself tells what is wrong, or has fewer modes

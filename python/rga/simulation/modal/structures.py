@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray, by_name
+from rga.arrays import FloatArray, IntArray, MassArrays, by_name
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, when_all_act
 from rga.model.effects.loads.load_mass import LoadMass
@@ -18,19 +18,24 @@ from rga.simulation.dispatch import APART, Request, variation_under
 from rga.simulation.paths.response import refused
 from rga.simulation.simulator import Simulator
 
+#: states, beside the least and the largest parameters, in which masses are held against each other
+DRAWN = 64
+
 
 @dataclass(frozen=True)
 class ModalSamples:
     """Structures that differ in stiffnesses of whole members or springs, and in nothing else.
 
     Attributes:
-        start: one of them, or near them.
+        start: near them, or one of them; of its own masses.
+        masses: of all of them.
         elements: numbers of members, and of springs behind all members, that vary, int[elements].
         factors: on their stiffness in `start`, above zero, float[states, elements].
         state_of_row: int[rows].
     """
 
     start: Structure
+    masses: MassArrays
     elements: IntArray
     factors: FloatArray
     state_of_row: IntArray
@@ -88,14 +93,15 @@ class ModalStructures:
         varied = variation_under(request, states) if len(states) > APART else None
         if varied is None or not varied.start.linear or not (varied.first > 0).all():
             return None
-        looked_at = (states.min(axis=0), states.max(axis=0), states[0], states[len(states) // 2])
-        if not all(_weigh_alike(varied.start, request.change(state)) for state in looked_at):
+        first = request.change(states[0])
+        looked_at = np.vstack([states.min(axis=0), states.max(axis=0), _some(states)])
+        if not all(_weigh_alike(first, request.change(state)) for state in looked_at):
             return None
         factors = varied.at(states) / varied.first
         if not (factors > 0).all():
             return None
         elements = np.append(varied.members, len(varied.start.arrays["ends"]) + varied.springs)
-        return ModalSamples(varied.start, elements, factors, request.state_of_row)
+        return ModalSamples(varied.start, first.masses, elements, factors, request.state_of_row)
 
     def _request(self, contexts: Contexts | None) -> Request:
         given = self._given(contexts)
@@ -152,6 +158,13 @@ def _swinging(model: Model) -> dict[str, Effect]:
     if any(one.overrides("change_values") for one in off_sensors.values()):
         return {name: swinging[name] or one for name, one in off_sensors.items()}
     return {name: one for name, one in swinging.items() if one is not None}
+
+
+def _some(states: FloatArray) -> FloatArray:
+    """All of few states, or some that are drawn from many, the same in every run."""
+    if len(states) <= DRAWN:
+        return states
+    return states[np.random.default_rng(0).choice(len(states), DRAWN, replace=False)]
 
 
 def _weigh_alike(one: Structure, other: Structure) -> bool:

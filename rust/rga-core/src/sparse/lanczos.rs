@@ -56,7 +56,6 @@ pub(crate) struct Lanczos<'a, P: Pencil> {
 }
 
 /// Eigenvalues of K^-1 M, the largest first, with vectors of length 1 in the norm of K.
-#[derive(Default)]
 pub(crate) struct RitzPairs {
     pub values: Vec<f64>,
     pub vectors: Vec<Vec<f64>>,
@@ -97,9 +96,9 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
                 }
             }
             if self.extended >= count || self.exhausted {
-                let found = self.pairs(count)?;
+                let found = self.within(count)?;
                 if found.converged >= count || self.exhausted {
-                    return Ok(found);
+                    return Ok(self.pairs(found));
                 }
             }
         }
@@ -199,7 +198,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     }
 
     /// The largest of those whose vectors K^-1 M has been applied to.
-    fn pairs(&self, count: usize) -> Result<RitzPairs> {
+    fn within(&self, count: usize) -> Result<Within> {
         let size = self.extended;
         let projected = Mat::from_fn(size, size, |row, column| {
             self.projected[row.max(column)][row.min(column)]
@@ -207,7 +206,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         let eigen = projected
             .self_adjoint_eigen(Side::Lower)
             .map_err(|_| Error::invalid("the modes do not converge; check the masses"))?;
-        let mut found = RitzPairs::default();
+        let mut found = Within::default();
         let mut all_so_far = true;
         for at in (0..size).rev().take(count) {
             let (value, shares) = (eigen.S()[at], eigen.U().col(at));
@@ -218,15 +217,34 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
             let residual = outside.map(|part| part * part).sum::<f64>().sqrt();
             all_so_far &= residual <= self.converged * value;
             found.converged += usize::from(all_so_far);
+            found.values.push(value);
+            found.shares.push(shares.iter().copied().collect());
+        }
+        Ok(found)
+    }
+
+    fn pairs(&self, found: Within) -> RitzPairs {
+        let vectors = found.shares.iter().map(|shares| {
             let mut vector = vec![0.0; self.pencil.size()];
             for (share, one) in shares.iter().zip(&self.vectors) {
                 subtract(&mut vector, -share, one);
             }
-            found.values.push(value);
-            found.vectors.push(vector);
+            vector
+        });
+        RitzPairs {
+            vectors: vectors.collect(),
+            values: found.values,
+            converged: found.converged,
         }
-        Ok(found)
     }
+}
+
+/// The same within the space, as shares of its vectors.
+#[derive(Default)]
+struct Within {
+    values: Vec<f64>,
+    shares: Vec<Vec<f64>>,
+    converged: usize,
 }
 
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {

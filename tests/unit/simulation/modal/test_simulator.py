@@ -98,26 +98,6 @@ def test_rows_that_share_a_structure_read_the_same(model: Model) -> None:
     assert found[0].tobytes() == found[2].tobytes()
 
 
-def test_many_rows_read_what_each_reads_by_itself(model: Model) -> None:
-    simulator, cold = ModalSimulator(model), np.linspace(0.0, 1.0, 11)
-    together = simulator.predict({"cold": cold})
-    alone = np.vstack([simulator.predict({"cold": one}) for one in cold])
-    np.testing.assert_allclose(together[:, :2], alone[:, :2], rtol=1e-9)
-    np.testing.assert_allclose(together, alone, rtol=1e-5)
-    assert np.ptp(together[:, 1]) > 0.02 * together[0, 1]
-
-
-def test_masses_that_vary_from_row_to_row_count(model: Model) -> None:
-    snow = {"group": "deck", "per_length": {"context": "cold", "times": 40.0}}
-    content = model_content(model)
-    content["effects"]["snow"] = {"kind": "added_mass", **snow}
-    simulator, cold = ModalSimulator(read_model(content, "a test")), np.linspace(0.0, 1.0, 7)
-    together = simulator.predict({"cold": cold})
-    alone = np.vstack([simulator.predict({"cold": one}) for one in cold])
-    np.testing.assert_allclose(together, alone, rtol=1e-9)
-    assert (np.diff(together[:, 0]) < 0.0).all()
-
-
 def test_pairing_says_how_much_alike_the_shapes_are(model: Model) -> None:
     pairing, frequencies, _ = ModalSimulator(model).pair({"cold": 0.0})
     mac = [pairing.mac[k, j] for k, j in enumerate(pairing.computed)]
