@@ -20,8 +20,6 @@ from rga_bench.solver.peers.cholmod import MODES, ORDERINGS
 from rga_bench.timing import shortest
 
 MODES_WANTED, OF_GRID = 8, 20
-#: samples that are gone through in turn, and of which frequencies are compared
-SAMPLES = 32
 #: of frequencies, relative
 AGREEMENT = 1e-9
 #: members whose stiffness varies where few do
@@ -41,8 +39,8 @@ def all_vary(setting: ModesSetting) -> list[Measurement]:
     draw = np.random.default_rng(setting.seed)
     factors = np.hstack(
         [
-            draw.uniform(*OF_MEMBERS, (SAMPLES, members)),
-            draw.uniform(*OF_SPRINGS, (SAMPLES, springs)),
+            draw.uniform(*OF_MEMBERS, (setting.samples, members)),
+            draw.uniform(*OF_SPRINGS, (setting.samples, springs)),
         ]
     )
     case = f"84 nodes, {members} members, {MODES_WANTED} modes, every stiffness varies"
@@ -58,10 +56,10 @@ def few_vary(setting: ModesSetting) -> list[Measurement]:
     swinging = Swinging.of(box_bridge(setting.seed))
     members, springs = _counts(swinging)
     draw = np.random.default_rng(setting.seed)
-    factors = np.ones((SAMPLES, members + springs))
+    factors = np.ones((setting.samples, members + springs))
     varied = draw.choice(members, FEW, replace=False)
-    factors[:, varied] = draw.uniform(*OF_MEMBERS, (SAMPLES, FEW))
-    factors[:, members:] = draw.uniform(*OF_SPRINGS, (SAMPLES, springs))
+    factors[:, varied] = draw.uniform(*OF_MEMBERS, (setting.samples, FEW))
+    factors[:, members:] = draw.uniform(*OF_SPRINGS, (setting.samples, springs))
     case = f"the same, {FEW} members and {springs} springs vary"
     few = np.append(varied, members + np.arange(springs))
     return _rates(case, swinging, factors, few, LEAST_FEW, setting)

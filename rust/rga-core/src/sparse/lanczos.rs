@@ -3,8 +3,8 @@
 //! M may be singular: K^-1 M is self-adjoint in the product of K all the same, and what has no mass
 //! stays out of the space (Ericsson and Ruhe, The spectral transformation Lanczos method, Math.
 //! Comp. 35, 1980; Nour-Omid, Parlett, Ericsson and Jensen, How to implement the spectral
-//! transformation, Math. Comp. 48, 1987). All vectors are kept orthogonal, twice (Parlett, The
-//! Symmetric Eigenvalue Problem, 1980, section 6.9).
+//! transformation, Math. Comp. 48, 1987). All vectors are kept orthogonal (Parlett, The Symmetric
+//! Eigenvalue Problem, 1980, section 6.9).
 
 use faer::{Mat, Side};
 
@@ -18,6 +18,12 @@ const DEPENDENT: f64 = 1e-10;
 const DELICATE: f64 = 1e-4;
 /// Of such a vector of length one, what is left when all of it was rounding.
 const ALL_ROUNDING: f64 = 0.1;
+/// Vectors of the last three steps. Of a vector that keeps this part of its length as the space is
+/// taken off it, what lies in the space is rounding; others have it taken off again, so often at
+/// most.
+const NEWEST: usize = 3 * BLOCK;
+const KEPT: f64 = 0.5;
+const PASSES: usize = 3;
 /// Residual of an eigenvector, in the norm of K, over its eigenvalue, which errs by the square of
 /// that: of a space that starts with nothing, and of one that starts with vectors near by.
 const CONVERGED: f64 = 1e-11;
@@ -184,15 +190,28 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         Ok(())
     }
 
-    /// Takes what lies in the space off a vector and its image under K, twice; the norm of what is
-    /// left.
+    /// Takes what lies in the space off a vector and its image under K, until that is no more than
+    /// rounding; the norm of what is left.
     fn orthogonalise(&self, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
-        for _ in 0..2 {
-            for (other, other_stiff) in self.vectors.iter().zip(&self.stiff) {
-                let share = dot(other_stiff, vector);
-                subtract(vector, share, other);
-                subtract(stiff, share, other_stiff);
+        // All that is more in what K^-1 M makes of the newest vectors is a part of these.
+        let newest = self.vectors.len().saturating_sub(NEWEST);
+        let mut norm = self.take_off(newest, vector, stiff);
+        for _ in 0..PASSES {
+            let before = norm;
+            norm = self.take_off(0, vector, stiff);
+            if norm > KEPT * before {
+                break;
             }
+        }
+        norm
+    }
+
+    /// Takes what lies in the vectors from one on off, one after the other.
+    fn take_off(&self, from: usize, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
+        for (other, other_stiff) in self.vectors.iter().zip(&self.stiff).skip(from) {
+            let share = dot(other_stiff, vector);
+            subtract(vector, share, other);
+            subtract(stiff, share, other_stiff);
         }
         dot(vector, stiff).max(0.0).sqrt()
     }
