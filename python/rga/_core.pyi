@@ -16,6 +16,7 @@ __all__ = [
     "GaussianWindow",
     "InvalidInput",
     "Loaded",
+    "ModalBatch",
     "ModalReanalysis",
     "NotConverged",
     "OutputKind",
@@ -223,6 +224,24 @@ class Reanalysis:
 
     def rates(self, loaded: Loaded) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Members [k], and derivatives [k, p, o] of the outputs by the logarithm of their EA."""
+
+@final
+class ModalBatch:
+    """Modes of samples whose stiffnesses vary; `help(ModalBatch)` tells more."""
+
+    def __new__(
+        cls,
+        structure: StructureArrays,
+        masses: MassArrays,
+        varied: NDArray[np.int64],
+        count: int,
+        dofs: NDArray[np.int64],
+        instructions: str | None = None,
+    ) -> Self: ...
+    def modes(
+        self, factors: NDArray[np.float64], threads: int = 1
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Eigenvalues [k, c] and shapes [k, c, d] of samples, from factors [k, e]."""
 
 @final
 class ModalReanalysis:

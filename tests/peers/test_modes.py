@@ -15,7 +15,7 @@ from rga_bench.modes.swinging import Swinging
 from rga_bench.solver.box_bridge import box_bridge
 from rga_bench.solver.double_layer_grid import double_layer_grid
 
-LITTLE = ModesSetting(seconds=0.0, panels=4, judged=False)
+LITTLE = ModesSetting(seconds=0.0, panels=4, samples=16, judged=False)
 
 
 def peer(name: str, swinging: Swinging) -> Any:
@@ -34,6 +34,22 @@ def test_a_peer_agrees(name: str, truss: Any) -> None:
     factors = np.random.default_rng(5).uniform(0.7, 1.4, count)
     ours = hertz(_core.modes(swinging.structure(factors), swinging.masses, 8)[0])
     np.testing.assert_allclose(peer(name, swinging).frequencies(factors), ours, rtol=1e-9)
+
+
+@pytest.mark.parametrize("few", [True, False])
+def test_samples_side_by_side_agree_with_dense_matrices(few: bool) -> None:
+    swinging = Swinging.of(box_bridge(seed=4))
+    structure, masses = swinging.truss.structure, swinging.masses
+    count = len(structure["ends"]) + len(structure["spring_stiffness"])
+    draw = np.random.default_rng(6)
+    varied = draw.choice(count, 10, replace=False) if few else np.arange(count)
+    factors = np.ones((9, count))
+    factors[:, varied] = draw.uniform(0.4, 1.8, (9, len(varied)))
+    batch = _core.ModalBatch(structure, masses, varied, 8, np.zeros(0, np.int64))
+    squares, _ = batch.modes(np.ascontiguousarray(factors[:, varied]), 2)
+    dense = Dense(swinging, 8)
+    for own, sample in zip(squares, factors, strict=True):
+        np.testing.assert_allclose(hertz(own), dense.frequencies(sample), rtol=1e-9)
 
 
 def test_a_peer_that_is_wrong_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

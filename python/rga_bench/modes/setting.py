@@ -10,16 +10,18 @@ class ModesSetting:
     Attributes:
         seconds: that a figure is measured for.
         panels: along a side of the double-layer grid.
+        samples: that are gone through in turn, and of which frequencies are compared.
         seed: of structures and samples.
         judged: whether figures are held against their targets.
     """
 
     seconds: float = 2.0
     panels: int = 64
+    samples: int = 256
     seed: int = 0
     judged: bool = True
 
 
 def shorter(seed: int) -> ModesSetting:
     """What takes some seconds: too short to judge by."""
-    return ModesSetting(0.05, 12, seed, judged=False)
+    return ModesSetting(0.05, 12, 16, seed, judged=False)

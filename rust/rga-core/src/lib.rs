@@ -25,6 +25,7 @@ pub use rga_simd::{Array, instructions};
 
 pub use error::{Error, Result};
 pub use input::{Loads, Masses, OutputKind, Outputs, Structure};
+pub use paths::batch::modal::ModalBatch;
 pub use paths::batch::{BatchSolver, Samples};
 pub use paths::condensation::{Condensation, UnitResponses};
 pub use paths::condensed::Condensed;

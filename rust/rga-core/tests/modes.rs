@@ -2,11 +2,9 @@
 
 mod common;
 
+use common::masses::{mass, with_masses};
 use common::*;
-use rga_core::{
-    Array, Error, Masses, ModalEnergies, ModalReanalysis, Modes, Result, Structure, modal_energies,
-    modes,
-};
+use rga_core::{Error, ModalEnergies, ModalReanalysis, Modes, Result, modal_energies, modes};
 
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 const LINE: f64 = 60.0;
@@ -44,31 +42,6 @@ fn energies(
     with_masses(case, line, nodal, |structure, masses| {
         modal_energies(structure, masses, shapes)
     })
-}
-
-fn with_masses<T>(
-    case: &Case,
-    line: f64,
-    nodal: &[(usize, [f64; 6])],
-    does: impl FnOnce(&Structure, &Masses) -> T,
-) -> T {
-    let (n, m) = (case.nodes.len(), case.ends.len());
-    let (line, section) = (vec![line; m], vec![0.0; 3 * m]);
-    let mut masses = vec![0.0; 6 * n];
-    for (node, mass) in nodal {
-        masses[6 * node..6 * node + 6].copy_from_slice(mass);
-    }
-    let (members, sections, nodes) = ([m], [m, 3], [n, 6]);
-    let masses = Masses {
-        line: Array::new(&line, &members),
-        section: Array::new(&section, &sections),
-        nodal: Array::new(&masses, &nodes),
-    };
-    case.lend(&[], |structure, _, _| does(structure, &masses))
-}
-
-fn mass(mass: f64) -> [f64; 6] {
-    [mass, mass, mass, 0.0, 0.0, 0.0]
 }
 
 #[test]

@@ -182,6 +182,6 @@ impl BatchSolver {
 }
 
 /// The core refuses 0 as it would refuse what is negative.
-fn count(threads: i64) -> usize {
+pub(crate) fn count(threads: i64) -> usize {
     usize::try_from(threads).unwrap_or(0)
 }

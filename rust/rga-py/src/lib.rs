@@ -40,6 +40,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<condensation::Condensation>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_class::<batch_solver::BatchSolver>()?;
+    module.add_class::<modes::ModalBatch>()?;
     module.add_class::<modes::ModalReanalysis>()?;
     module.add_class::<reanalysis::Loaded>()?;
     module.add_class::<reanalysis::Reanalysis>()?;

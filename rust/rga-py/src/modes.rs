@@ -1,10 +1,13 @@
-//! Natural frequencies and mode shapes: functions, and the class `ModalReanalysis`.
+//! Natural frequencies and mode shapes: functions, and the classes `ModalReanalysis` and
+//! `ModalBatch`.
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rga_core::Modes;
 
+use crate::arrays::{Held, numbers};
+use crate::batch_solver::count as positive;
 use crate::exceptions::to_python;
 use crate::read::{read_masses, read_structure};
 
@@ -151,5 +154,95 @@ impl ModalReanalysis {
             .detach(|| self.0.modes(&model, &weights, count))
             .map_err(|error| to_python(py, error))?;
         given(py, &found, model.coordinates.len())
+    }
+}
+
+/// Modes of samples of a structure of which stiffnesses vary, few or all; masses stay.
+///
+/// Samples are solved together, in the lanes of a processor: block inverse iteration from the modes
+/// of the structure, until residuals prove each eigenvalue to a part in 1e9; then all are counted
+/// (Sylvester's law). Where up to 32 terms of rank one vary, that is done in a space of few
+/// vectors, and residuals and count hold what lies outside too. A sample that is not proved or
+/// counted so is solved in the whole, or by itself, as by `ModalReanalysis`.
+///
+/// Parameters
+/// ----------
+/// structure, masses : as for `modes`, with m members, s springs and n nodes
+/// varied : i64[e], numbers of the members that vary, and of springs behind all members
+/// count : of the lowest modes that are wanted, c
+/// dofs : i64[d], along which shapes are shown: six times the node and the direction, 0..5
+/// instructions : one of `instructions()` that samples are solved with; None: the best. Results do
+///     not depend on it
+///
+/// Raises
+/// ------
+/// InvalidInput, UnstableStructure
+#[pyclass(module = "rga._core", frozen)]
+pub struct ModalBatch {
+    core: rga_core::ModalBatch,
+    shape: [usize; 2],
+}
+
+#[pymethods]
+impl ModalBatch {
+    #[new]
+    #[pyo3(signature = (structure, masses, varied, count, dofs, instructions=None))]
+    fn new(
+        structure: &Bound<'_, PyDict>,
+        masses: &Bound<'_, PyDict>,
+        varied: &Bound<'_, PyAny>,
+        count: usize,
+        dofs: &Bound<'_, PyAny>,
+        instructions: Option<&str>,
+    ) -> PyResult<Self> {
+        let py = structure.py();
+        read_structure!(model from structure);
+        read_masses!(weights from masses);
+        let (varied, dofs) = (numbers(varied, "varied")?, numbers(dofs, "dofs")?);
+        let make =
+            || rga_core::ModalBatch::new(&model, &weights, &varied, count, &dofs, instructions);
+        py.detach(make)
+            .map(|core| Self {
+                core,
+                shape: [count, dofs.len()],
+            })
+            .map_err(|error| to_python(py, error))
+    }
+
+    /// Modes of samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// factors : f64[k, e], above zero, on the whole stiffness of each member or spring that varies. A member whose end connections yield keeps a factor of 1.
+    /// threads : how many share the rows; the results do not depend on it
+    ///
+    /// Returns
+    /// -------
+    /// f64[k, c], squares of the circular frequencies [rad2/s2]; f64[k, c, d], shapes along the
+    /// dofs with a modal mass of 1 kg, of which the largest motion of all nodes is positive.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput; UnstableStructure, with the first row that fails as `row`
+    #[pyo3(signature = (factors, threads=1))]
+    fn modes<'py>(
+        &self,
+        py: Python<'py>,
+        factors: &Bound<'py, PyAny>,
+        threads: i64,
+    ) -> PyResult<(Matrix<'py>, Bound<'py, PyArray3<f64>>)> {
+        let factors = Held::new(factors, "factors")?;
+        let samples = factors.view();
+        let found = py
+            .detach(|| self.core.modes(samples, positive(threads)))
+            .map_err(|error| to_python(py, error))?;
+        let (rows, [modes, dofs]) = (samples.len(), self.shape);
+        let own = found.chunks_exact(1 + dofs);
+        let values: Vec<f64> = own.clone().map(|mode| mode[0]).collect();
+        let shapes: Vec<f64> = own.flat_map(|mode| &mode[1..]).copied().collect();
+        Ok((
+            PyArray1::from_vec(py, values).reshape([rows, modes])?,
+            PyArray1::from_vec(py, shapes).reshape([rows, modes, dofs])?,
+        ))
     }
 }

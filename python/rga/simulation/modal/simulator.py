@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rga.arrays import FloatArray
+from rga import _core
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model import as_model
 from rga.model.effect import Effect, Values
@@ -75,9 +76,8 @@ class ModalSimulator:
                 for one that is expected.
             UnstableStructureError: the structure can move; names node and direction.
         """
-        structures, of_row = self._structures.under(contexts)
-        found = np.array([self._read(structure) for structure in structures])
-        shown = found.reshape(len(structures), len(self.model.modal_sensors))[of_row]
+        found, of_row = self._side_by_side(contexts) or self._one_by_one(contexts)
+        shown = found[of_row]
         recorded = [one for one in self.model.effects.values() if one.on_sensors and one.on_modes]
         if recorded:
             self._as_recorded(shown, recorded, self._structures.table(contexts))
@@ -127,8 +127,37 @@ class ModalSimulator:
             at, shape = np.arange(len(self._points)), shapes[mode.computed - 1]
         return Expected(mode.near, mode.within, at, shape)
 
-    def _read(self, structure: Structure) -> FloatArray:
-        frequencies, shapes = self._computed(structure)
+    def _one_by_one(self, contexts: Contexts | None) -> tuple[FloatArray, IntArray]:
+        """What sensors read of structures, float[structures, sensors], and which is each row's."""
+        structures, of_row = self._structures.under(contexts)
+        found = np.array([self._read(*self._computed(structure)) for structure in structures])
+        return found.reshape(len(structures), len(self.model.modal_sensors)), of_row
+
+    def _side_by_side(self, contexts: Contexts | None) -> tuple[FloatArray, IntArray] | None:
+        """The same where nothing but stiffnesses vary; None where something else does."""
+        samples = self._structures.samples(contexts)
+        if samples is None:
+            return None
+        structure, factors = samples.start.arrays, samples.factors
+        found = np.empty((len(factors), len(self.model.modal_sensors)))
+        left, count = np.arange(len(factors)), len(self.expected) + BEYOND
+        dofs = (6 * self._nodes[:, None] + np.arange(3)).ravel()
+        while len(left):
+            try:
+                batch = _core.ModalBatch(structure, samples.masses, samples.elements, count, dofs)
+                squares, moving = batch.modes(factors[left])
+            except (_core.UnstableStructure, _core.InvalidInput):
+                return None  # a structure by itself tells what is wrong, or has fewer modes
+            moving = moving.reshape(len(left), count, len(self._nodes), 3)
+            shapes = np.einsum("rmpk,pk->rmp", moving, self._directions)
+            frequencies = np.sqrt(squares) / (2 * np.pi)
+            enough = (frequencies[:, -1] > self._reach) | (count >= MOST)
+            for number in np.flatnonzero(enough):
+                found[left[number]] = self._read(frequencies[number], shapes[number])
+            left, count = left[~enough], min(2 * count, MOST)
+        return found, samples.state_of_row
+
+    def _read(self, frequencies: FloatArray, shapes: FloatArray) -> FloatArray:
         modes = list(self.expected.values())
         pairing = paired(modes, frequencies, shapes)
         at_points = turned(modes, pairing, frequencies, shapes)
@@ -149,13 +178,18 @@ class ModalSimulator:
             )
         return found
 
+    @property
+    def _reach(self) -> float:
+        """Up to where the expected modes may be [Hz]."""
+        each = (one.near * np.exp(REACH * one.within) for one in self.expected.values())
+        return float(max(each))
+
     def _computed(self, structure: Structure) -> tuple[FloatArray, FloatArray]:
         """Modes up to where the expected ones may be, and some beyond."""
-        reach = max(one.near * np.exp(REACH * one.within) for one in self.expected.values())
         count = len(self.expected) + BEYOND
         while True:
             frequencies, shapes = self._at_points(structure, count)
-            if len(frequencies) < count or frequencies[-1] > reach or count >= MOST:
+            if len(frequencies) < count or frequencies[-1] > self._reach or count >= MOST:
                 return frequencies, shapes
             count = min(2 * count, MOST)
 

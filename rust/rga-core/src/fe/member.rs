@@ -62,6 +62,14 @@ impl Member {
         !self.frame.as_deref().is_some_and(|frame| frame.yields)
     }
 
+    /// Multiplies the stiffness between the nodes.
+    pub(crate) fn stiffen(&mut self, factor: f64) {
+        self.ea *= factor;
+        if let Some(frame) = &mut self.frame {
+            frame.stiffness *= factor;
+        }
+    }
+
     /// The global dofs that the member stiffens, and its stiffness there.
     pub(crate) fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
         match &self.frame {

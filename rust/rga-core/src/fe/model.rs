@@ -68,6 +68,19 @@ impl Model {
         })
     }
 
+    /// The same with a factor on the whole stiffness of each member, then of each spring.
+    pub(crate) fn with_factors(&self, factors: &[f64]) -> Self {
+        let mut found = self.clone();
+        let (of_members, of_springs) = factors.split_at(self.members.len());
+        for (member, factor) in found.members.iter_mut().zip(of_members) {
+            member.stiffen(*factor);
+        }
+        for (spring, factor) in found.springs.iter_mut().zip(of_springs) {
+            spring.stiffness *= factor;
+        }
+        found
+    }
+
     /// Calls `add(row, column, value)` for all entries; entries repeat.
     pub(crate) fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
         for member in &self.members {

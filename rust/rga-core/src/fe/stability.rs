@@ -247,7 +247,7 @@ impl Solver {
     }
 
     /// K `unknowns`, from the assembled matrix.
-    fn resisted(&self, unknowns: &[f64]) -> Vec<f64> {
+    pub(crate) fn resisted(&self, unknowns: &[f64]) -> Vec<f64> {
         let pairs = unknowns.iter().zip(&self.scale);
         let scaled: Vec<f64> = pairs.map(|(unknown, scale)| unknown / scale).collect();
         let mut forces = self.matrix.product(&scaled);

@@ -8,11 +8,12 @@
 //! by itself (`scalar_fallback`), as is every sample of a structure that is too large for caches to
 //! hold it many times. Outputs and derivatives are read off the solved samples (`readings`).
 //! Factors enter all of these sparsely (`bilinear`); sums of the factorisation stay in registers
-//! (`tiles`).
+//! (`tiles`). Modes of samples are found with the same factors (`modal`).
 
 mod bilinear;
 mod cholesky;
 mod elimination;
+pub(crate) mod modal;
 mod panels;
 mod probe;
 mod readings;

@@ -4,7 +4,7 @@
 //! from the modes of a structure that is solved; `energies` are derivatives of the eigenvalues.
 
 mod energies;
-mod motion;
+pub(super) mod motion;
 mod reanalysis;
 
 use crate::error::{Error, Result};
@@ -15,6 +15,7 @@ use crate::validate::structure::check_structure;
 pub use energies::{ModalEnergies, modal_energies};
 use motion::Motion;
 pub use reanalysis::ModalReanalysis;
+pub(super) use reanalysis::modes_of_another;
 
 /// Modes whose eigenvalues differ by this part or less are not cut apart by the count.
 const ALIKE: f64 = 1e-6;
@@ -51,7 +52,7 @@ pub fn modes(structure: &Structure, masses: &Masses, count: usize) -> Result<Mod
 ///
 /// That none is missed is proved by the inertia of K - s M (Parlett, The Symmetric Eigenvalue
 /// Problem, 1980, section 3.3), with s above the last.
-fn lowest(
+pub(super) fn lowest(
     motion: &Motion,
     count: usize,
     beyond: usize,

@@ -3,8 +3,8 @@
 //! M may be singular: K^-1 M is self-adjoint in the product of K all the same, and what has no mass
 //! stays out of the space (Ericsson and Ruhe, The spectral transformation Lanczos method, Math.
 //! Comp. 35, 1980; Nour-Omid, Parlett, Ericsson and Jensen, How to implement the spectral
-//! transformation, Math. Comp. 48, 1987). All vectors are kept orthogonal, twice (Parlett, The
-//! Symmetric Eigenvalue Problem, 1980, section 6.9).
+//! transformation, Math. Comp. 48, 1987). All vectors are kept orthogonal (Parlett, The Symmetric
+//! Eigenvalue Problem, 1980, section 6.9).
 
 use faer::{Mat, Side};
 
@@ -18,6 +18,12 @@ const DEPENDENT: f64 = 1e-10;
 const DELICATE: f64 = 1e-4;
 /// Of such a vector of length one, what is left when all of it was rounding.
 const ALL_ROUNDING: f64 = 0.1;
+/// Vectors of the last three steps. Of a vector that keeps this part of its length as the space is
+/// taken off it, what lies in the space is rounding; others have it taken off again, so often at
+/// most.
+const NEWEST: usize = 3 * BLOCK;
+const KEPT: f64 = 0.5;
+const PASSES: usize = 3;
 /// Residual of an eigenvector, in the norm of K, over its eigenvalue, which errs by the square of
 /// that: of a space that starts with nothing, and of one that starts with vectors near by.
 const CONVERGED: f64 = 1e-11;
@@ -56,7 +62,6 @@ pub(crate) struct Lanczos<'a, P: Pencil> {
 }
 
 /// Eigenvalues of K^-1 M, the largest first, with vectors of length 1 in the norm of K.
-#[derive(Default)]
 pub(crate) struct RitzPairs {
     pub values: Vec<f64>,
     pub vectors: Vec<Vec<f64>>,
@@ -97,9 +102,9 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
                 }
             }
             if self.extended >= count || self.exhausted {
-                let found = self.pairs(count)?;
+                let found = self.within(count)?;
                 if found.converged >= count || self.exhausted {
-                    return Ok(found);
+                    return Ok(self.pairs(found));
                 }
             }
         }
@@ -185,21 +190,34 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         Ok(())
     }
 
-    /// Takes what lies in the space off a vector and its image under K, twice; the norm of what is
-    /// left.
+    /// Takes what lies in the space off a vector and its image under K, until that is no more than
+    /// rounding; the norm of what is left.
     fn orthogonalise(&self, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
-        for _ in 0..2 {
-            for (other, other_stiff) in self.vectors.iter().zip(&self.stiff) {
-                let share = dot(other_stiff, vector);
-                subtract(vector, share, other);
-                subtract(stiff, share, other_stiff);
+        // All that is more in what K^-1 M makes of the newest vectors is a part of these.
+        let newest = self.vectors.len().saturating_sub(NEWEST);
+        let mut norm = self.take_off(newest, vector, stiff);
+        for _ in 0..PASSES {
+            let before = norm;
+            norm = self.take_off(0, vector, stiff);
+            if norm > KEPT * before {
+                break;
             }
+        }
+        norm
+    }
+
+    /// Takes what lies in the vectors from one on off, one after the other.
+    fn take_off(&self, from: usize, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
+        for (other, other_stiff) in self.vectors.iter().zip(&self.stiff).skip(from) {
+            let share = dot(other_stiff, vector);
+            subtract(vector, share, other);
+            subtract(stiff, share, other_stiff);
         }
         dot(vector, stiff).max(0.0).sqrt()
     }
 
     /// The largest of those whose vectors K^-1 M has been applied to.
-    fn pairs(&self, count: usize) -> Result<RitzPairs> {
+    fn within(&self, count: usize) -> Result<Within> {
         let size = self.extended;
         let projected = Mat::from_fn(size, size, |row, column| {
             self.projected[row.max(column)][row.min(column)]
@@ -207,7 +225,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         let eigen = projected
             .self_adjoint_eigen(Side::Lower)
             .map_err(|_| Error::invalid("the modes do not converge; check the masses"))?;
-        let mut found = RitzPairs::default();
+        let mut found = Within::default();
         let mut all_so_far = true;
         for at in (0..size).rev().take(count) {
             let (value, shares) = (eigen.S()[at], eigen.U().col(at));
@@ -218,15 +236,34 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
             let residual = outside.map(|part| part * part).sum::<f64>().sqrt();
             all_so_far &= residual <= self.converged * value;
             found.converged += usize::from(all_so_far);
+            found.values.push(value);
+            found.shares.push(shares.iter().copied().collect());
+        }
+        Ok(found)
+    }
+
+    fn pairs(&self, found: Within) -> RitzPairs {
+        let vectors = found.shares.iter().map(|shares| {
             let mut vector = vec![0.0; self.pencil.size()];
             for (share, one) in shares.iter().zip(&self.vectors) {
                 subtract(&mut vector, -share, one);
             }
-            found.values.push(value);
-            found.vectors.push(vector);
+            vector
+        });
+        RitzPairs {
+            vectors: vectors.collect(),
+            values: found.values,
+            converged: found.converged,
         }
-        Ok(found)
     }
+}
+
+/// The same within the space, as shares of its vectors.
+#[derive(Default)]
+struct Within {
+    values: Vec<f64>,
+    shares: Vec<Vec<f64>>,
+    converged: usize,
 }
 
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {

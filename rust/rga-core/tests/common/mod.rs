@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 pub mod grid;
+pub mod masses;
 pub mod samples;
+pub mod swinging;
 
 use rga_core::{Array, Loads, OutputKind, Outputs, Result, Structure, respond};
 

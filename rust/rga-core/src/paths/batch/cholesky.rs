@@ -2,7 +2,8 @@
 //!
 //! Every sum is a chain of fused multiply-adds in a fixed order, so that a sample has the same bits
 //! in any lane of any instruction set. Sums stay in registers (`tiles`).
-//! Right-hand sides go through the factor in `substitution`.
+//! Right-hand sides go through the factor in `substitution`. With signs to its pivots the factor is
+//! that of a matrix that need not be positive definite, of which eigenvalues are counted.
 
 // Tiles are indexed by loops of fixed lengths, which are unrolled.
 #![allow(clippy::needless_range_loop)]
@@ -25,6 +26,9 @@ pub(super) struct Cholesky<'a, L: Lanes> {
     pub diagonal: Vec<L::Numbers>,
     /// Lanes of which every pivot is at least a share of the diagonal.
     pub sound: L::Mask,
+    /// Signs of the pivots, and how many are negative, of a matrix that was counted.
+    signs: Vec<L::Numbers>,
+    negative: L::Numbers,
 }
 
 impl<'a, L: Lanes> Cholesky<'a, L> {
@@ -35,6 +39,8 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             inverse: vec![zero; panels.size()],
             diagonal: vec![zero; panels.size()],
             sound: lanes.at_most(zero, zero),
+            signs: vec![zero; panels.size()],
+            negative: zero,
             panels,
         }
     }
@@ -51,13 +57,33 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         right: &mut [L::Numbers],
     ) {
         let cholesky = self;
-        lanes.vectorize(Factorise {
+        lanes.vectorize(Factorise::<L, false> {
             lanes,
             cholesky,
             weights,
             share,
             right,
         });
+    }
+
+    /// How many eigenvalues are negative of a matrix that need not be positive definite: as many
+    /// as pivots (Sylvester's law of inertia). Pivots are held against the diagonal of the K that
+    /// was factorised before; its factor is lost.
+    pub(super) fn negative_eigenvalues(
+        &mut self,
+        lanes: L,
+        weights: &[L::Numbers],
+        share: f64,
+    ) -> L::Numbers {
+        let cholesky = &mut *self;
+        lanes.vectorize(Factorise::<L, true> {
+            lanes,
+            cholesky,
+            weights,
+            share,
+            right: &mut [],
+        });
+        self.negative
     }
 
     /// Solves K x = `right` in place, `N` right-hand sides beside each other.
@@ -71,7 +97,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     }
 
     #[inline(always)]
-    fn fill(&mut self, lanes: L, panel: &Panel, weights: &[L::Numbers]) {
+    fn fill<const SIGNED: bool>(&mut self, lanes: L, panel: &Panel, weights: &[L::Numbers]) {
         let values = &mut self.values[panel.numbers()];
         for &place in &panel.empty {
             values[place as usize] = lanes.splat(0.0);
@@ -92,6 +118,9 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             }
             values[sum[0].place as usize] = total;
         }
+        if SIGNED {
+            return;
+        }
         let own = &mut self.diagonal[panel.first..panel.first + panel.width];
         for (place, value) in own.iter_mut().zip(values.iter().step_by(panel.rows() + 1)) {
             *place = *value;
@@ -100,7 +129,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
 
     /// Columns of one panel, some at a time.
     #[inline(always)]
-    fn factorise_panel<const TALL: usize, const WIDE: usize>(
+    fn factorise_panel<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -108,20 +137,20 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     ) {
         let mut column = 0;
         while column + WIDE <= panel.width {
-            self.factorise_columns::<TALL, WIDE>(lanes, panel, column, share);
+            self.factorise_columns::<TALL, WIDE, SIGNED>(lanes, panel, column, share);
             column += WIDE;
         }
         match panel.width - column {
-            3 => self.factorise_columns::<TALL, 3>(lanes, panel, column, share),
-            2 => self.factorise_columns::<TALL, 2>(lanes, panel, column, share),
-            1 => self.factorise_columns::<TALL, 1>(lanes, panel, column, share),
+            3 => self.factorise_columns::<TALL, 3, SIGNED>(lanes, panel, column, share),
+            2 => self.factorise_columns::<TALL, 2, SIGNED>(lanes, panel, column, share),
+            1 => self.factorise_columns::<TALL, 1, SIGNED>(lanes, panel, column, share),
             _ => {}
         }
     }
 
     /// What the columns before take, then the columns themselves.
     #[inline(always)]
-    fn factorise_columns<const TALL: usize, const WIDE: usize>(
+    fn factorise_columns<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -131,17 +160,27 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         let rows = panel.rows();
         let (before, own) = self.values[panel.numbers()].split_at_mut(column * rows);
         let mut triangle = load::<L, WIDE, WIDE>(lanes, own, rows, column);
-        take_products(lanes, before, rows, (column, column), &mut triangle);
+        let given = (&*before, &self.signs[panel.first..panel.first + column]);
+        take_products::<L, WIDE, WIDE, SIGNED>(lanes, given, rows, (column, column), &mut triangle);
         let mut inverse = [lanes.splat(0.0); WIDE];
         for at in 0..WIDE {
             let unknown = panel.first + column + at;
             let pivot = triangle[at][at];
             let least = lanes.mul(lanes.splat(share), self.diagonal[unknown]);
-            let strong = lanes.at_most(least, pivot);
+            let size = if SIGNED { lanes.abs(pivot) } else { pivot };
+            let strong = lanes.at_most(least, size);
             self.sound = lanes.and(self.sound, strong);
             // The next pivot waits for this division, and not for the root as well.
             let of_one = lanes.div(lanes.splat(1.0), pivot);
-            inverse[at] = lanes.sqrt(of_one);
+            let of_size = if SIGNED { lanes.abs(of_one) } else { of_one };
+            inverse[at] = lanes.sqrt(of_size);
+            if SIGNED {
+                let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
+                let negative = lanes.above(zero, pivot);
+                self.signs[unknown] = lanes.select(negative, lanes.neg(one), one);
+                let counted = lanes.select(negative, one, zero);
+                self.negative = lanes.add(self.negative, counted);
+            }
             self.inverse[unknown] = inverse[at];
             for other in 0..WIDE {
                 if other > at {
@@ -162,8 +201,17 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         }
         // What stands above the diagonal counts for nothing.
         store(lanes, own, rows, column, &triangle);
-        let below = Below {
+        if SIGNED {
+            for at in 0..WIDE {
+                let sign = self.signs[panel.first + column + at];
+                for value in &mut triangle[at] {
+                    *value = lanes.mul(*value, sign);
+                }
+            }
+        }
+        let below = Below::<_, WIDE, SIGNED> {
             before,
+            signs: &self.signs[panel.first..panel.first + column],
             rows,
             column,
             triangle: &triangle,
@@ -184,7 +232,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     }
 
     #[inline(always)]
-    fn hand_on<const TALL: usize, const WIDE: usize>(
+    fn hand_on<const TALL: usize, const WIDE: usize, const SIGNED: bool>(
         &mut self,
         lanes: L,
         panel: &Panel,
@@ -192,8 +240,9 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     ) {
         let other = &self.panels.panels[update.to];
         let (before, behind) = self.values.split_at_mut(other.start);
-        let hand = Hand {
+        let hand = Hand::<_, SIGNED> {
             given: &before[panel.numbers()],
+            signs: &self.signs[panel.first..panel.first + panel.width],
             height: panel.rows(),
             skipped: panel.width + update.from,
             rows: &update.rows,
@@ -219,7 +268,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
 const WIDE: usize = 4;
 
 /// Compiled once for an instruction set, not wherever it is called.
-struct Factorise<'a, 'b, L: Lanes> {
+struct Factorise<'a, 'b, L: Lanes, const SIGNED: bool> {
     lanes: L,
     cholesky: &'a mut Cholesky<'b, L>,
     weights: &'a [L::Numbers],
@@ -227,7 +276,7 @@ struct Factorise<'a, 'b, L: Lanes> {
     right: &'a mut [L::Numbers],
 }
 
-impl<L: Lanes> NullaryFnOnce for Factorise<'_, '_, L> {
+impl<L: Lanes, const SIGNED: bool> NullaryFnOnce for Factorise<'_, '_, L, SIGNED> {
     type Output = ();
 
     #[inline(always)]
@@ -240,7 +289,7 @@ impl<L: Lanes> NullaryFnOnce for Factorise<'_, '_, L> {
     }
 }
 
-impl<L: Lanes> Factorise<'_, '_, L> {
+impl<L: Lanes, const SIGNED: bool> Factorise<'_, '_, L, SIGNED> {
     #[inline(always)]
     fn factorise<const TALL: usize>(self) {
         let Self {
@@ -252,20 +301,24 @@ impl<L: Lanes> Factorise<'_, '_, L> {
         } = self;
         let panels = cholesky.panels;
         let zero = lanes.splat(0.0);
-        cholesky.sound = lanes.at_most(zero, zero);
+        (cholesky.sound, cholesky.negative) = (lanes.at_most(zero, zero), zero);
         for panel in &panels.panels {
             if panel.is_first {
-                cholesky.fill(lanes, panel, weights);
+                cholesky.fill::<SIGNED>(lanes, panel, weights);
             }
-            cholesky.factorise_panel::<TALL, WIDE>(lanes, panel, share);
-            cholesky.forward::<1>(lanes, panel, right);
+            cholesky.factorise_panel::<TALL, WIDE, SIGNED>(lanes, panel, share);
+            if !SIGNED {
+                cholesky.forward::<1>(lanes, panel, right);
+            }
             for &other in &panel.fills {
-                cholesky.fill(lanes, &panels.panels[other], weights);
+                cholesky.fill::<SIGNED>(lanes, &panels.panels[other], weights);
             }
             for update in &panel.updates {
-                cholesky.hand_on::<TALL, WIDE>(lanes, panel, update);
+                cholesky.hand_on::<TALL, WIDE, SIGNED>(lanes, panel, update);
             }
         }
-        cholesky.backward::<1>(lanes, right);
+        if !SIGNED {
+            cholesky.backward::<1>(lanes, right);
+        }
     }
 }

@@ -86,7 +86,7 @@ pub(super) struct System {
 
 /// Numbers of a factor up to which samples are solved many at a time, one a lane. Beyond them
 /// caches hold too few of the lanes.
-const MOST: usize = 1 << 17;
+pub(super) const MOST: usize = 1 << 17;
 
 impl System {
     /// Together with K, of factors of one.

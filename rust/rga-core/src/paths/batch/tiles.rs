@@ -5,16 +5,18 @@
 use rga_simd::f64::Lanes;
 
 /// Rows of a panel below columns of which the triangle is factorised.
-pub(super) struct Below<'a, V, const WIDE: usize> {
-    /// The columns before.
+pub(super) struct Below<'a, V, const WIDE: usize, const SIGNED: bool> {
+    /// The columns before, and the signs of their pivots.
     pub before: &'a [V],
+    pub signs: &'a [V],
     pub rows: usize,
     pub column: usize,
+    /// Its columns, each times the sign of its pivot.
     pub triangle: &'a [[V; WIDE]; WIDE],
     pub inverse: &'a [V; WIDE],
 }
 
-impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
+impl<V: Copy, const WIDE: usize, const SIGNED: bool> Below<'_, V, WIDE, SIGNED> {
     #[inline(always)]
     pub(super) fn factorise<const TALL: usize>(
         &self,
@@ -23,7 +25,14 @@ impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
         own: &mut [V],
     ) {
         let mut sums = load::<_, TALL, WIDE>(lanes, own, self.rows, row);
-        take_products(lanes, self.before, self.rows, (row, self.column), &mut sums);
+        let places = (row, self.column);
+        take_products::<_, TALL, WIDE, SIGNED>(
+            lanes,
+            (self.before, self.signs),
+            self.rows,
+            places,
+            &mut sums,
+        );
         for at in 0..WIDE {
             for before in 0..WIDE {
                 if before < at {
@@ -42,9 +51,10 @@ impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
 }
 
 /// Products of rows of a panel, taken from another.
-pub(super) struct Hand<'a, V> {
-    /// The panel that hands on, of columns as high as this.
+pub(super) struct Hand<'a, V, const SIGNED: bool> {
+    /// The panel that hands on, of columns as high as this, and the signs of their pivots.
     pub given: &'a [V],
+    pub signs: &'a [V],
     pub height: usize,
     /// Rows before the first that is a column of the other panel.
     pub skipped: usize,
@@ -54,7 +64,7 @@ pub(super) struct Hand<'a, V> {
     pub offset: usize,
 }
 
-impl<V: Copy> Hand<'_, V> {
+impl<V: Copy, const SIGNED: bool> Hand<'_, V, SIGNED> {
     /// `WIDE` columns, and all rows from the first of them on. What falls above the diagonal of
     /// the other panel counts for nothing.
     #[inline(always)]
@@ -102,7 +112,13 @@ impl<V: Copy> Hand<'_, V> {
             }
         }
         let places = (self.skipped + row, self.skipped + column);
-        take_products(lanes, self.given, self.height, places, &mut sums);
+        take_products::<_, TALL, WIDE, SIGNED>(
+            lanes,
+            (self.given, self.signs),
+            self.height,
+            places,
+            &mut sums,
+        );
         for (sums, column) in sums.iter().zip(&self.rows[column..column + WIDE]) {
             let line = &mut to[column * self.offset..][..self.offset];
             if together {
@@ -118,26 +134,32 @@ impl<V: Copy> Hand<'_, V> {
     }
 }
 
-/// `sums` -= the products of rows from each of two places on, over all columns.
+/// `sums` -= the products of rows from each of two places on, over all columns: times the signs of
+/// these, or where `SIGNED` is false, there are none.
 #[inline(always)]
-pub(super) fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
+pub(super) fn take_products<L: Lanes, const TALL: usize, const WIDE: usize, const SIGNED: bool>(
     lanes: L,
-    columns: &[L::Numbers],
+    (columns, signs): (&[L::Numbers], &[L::Numbers]),
     height: usize,
     (row, other): (usize, usize),
     sums: &mut [[L::Numbers; TALL]; WIDE],
 ) {
     let mut held = *sums;
-    let mut rest = columns;
+    let (mut rest, mut column) = (columns, 0);
     while rest.len() >= height && height > 0 {
         let (line, further) = rest.split_at(height);
         let (own, factors) = (&line[row..row + TALL], &line[other..other + WIDE]);
         for (sums, factor) in held.iter_mut().zip(factors) {
+            let factor = if SIGNED {
+                lanes.mul(*factor, signs[column])
+            } else {
+                *factor
+            };
             for (sum, value) in sums.iter_mut().zip(own) {
-                *sum = lanes.take_product(*value, *factor, *sum);
+                *sum = lanes.take_product(*value, factor, *sum);
             }
         }
-        rest = further;
+        (rest, column) = (further, column + 1);
     }
     *sums = held;
 }

@@ -19,12 +19,12 @@ use crate::sparse::lower_triangle::LowerTriangle;
 const AS_LARGE: f64 = 1.0 - 1e-6;
 
 /// A structure that moves, as matrices of its unknowns.
-pub(super) struct Motion {
-    model: Model,
-    pub(super) reduction: Reduction,
-    pub(super) solver: Solver,
-    masses: ElementMasses,
-    mass: LowerTriangle,
+pub(in crate::paths) struct Motion {
+    pub(in crate::paths) model: Model,
+    pub(in crate::paths) reduction: Reduction,
+    solver: Solver,
+    masses: Arc<ElementMasses>,
+    mass: Arc<LowerTriangle>,
     counted: OnceLock<Arc<Count>>,
 }
 
@@ -35,10 +35,42 @@ struct Count {
 }
 
 impl Motion {
-    pub(super) fn new(structure: &Structure, masses: &Masses) -> Result<Self> {
+    pub(in crate::paths) fn new(structure: &Structure, masses: &Masses) -> Result<Self> {
         let (model, reduction) = reduced(structure)?;
         let solver = Solver::new(&model, &reduction)?;
         Self::with(model, reduction, solver, masses)
+    }
+
+    /// With a factor on the whole stiffness of each member, then of each spring. What turns freely
+    /// is held as it is here.
+    pub(in crate::paths) fn with_factors(&self, factors: &[f64]) -> Result<Self> {
+        let (model, reduction) = (self.model.with_factors(factors), self.reduction.clone());
+        let Some(solver) = self.solver.of_another(&model, &reduction)? else {
+            return Err(Error::invalid("the stiffness overflows; lower the factors"));
+        };
+        Ok(Self {
+            model,
+            reduction,
+            solver,
+            masses: Arc::clone(&self.masses),
+            mass: Arc::clone(&self.mass),
+            counted: self.counted.clone(),
+        })
+    }
+
+    /// Whether no rotation is held because nothing stiffens it.
+    pub(in crate::paths) fn turns_nowhere_freely(&self) -> bool {
+        self.solver.free_rotations().is_empty()
+    }
+
+    /// K x
+    pub(in crate::paths) fn stiffness_times(&self, x: &[f64]) -> Vec<f64> {
+        self.solver.resisted(x)
+    }
+
+    /// M
+    pub(in crate::paths) fn mass(&self) -> &LowerTriangle {
+        &self.mass
     }
 
     /// With the analysis of another; nothing where the unknowns are not coupled as there.
@@ -78,8 +110,8 @@ impl Motion {
             model,
             reduction,
             solver,
-            masses,
-            mass,
+            masses: Arc::new(masses),
+            mass: Arc::new(mass),
             counted: OnceLock::new(),
         })
     }
@@ -183,7 +215,7 @@ impl Motion {
 }
 
 /// By which the largest motion is positive; `arm` makes rotations count as translations.
-fn sign(shape: &[f64], arm: f64) -> f64 {
+pub(in crate::paths) fn sign(shape: &[f64], arm: f64) -> f64 {
     let size = |(dof, value): (usize, &f64)| value.abs() * if dof % 6 < 3 { 1.0 } else { arm };
     let most = shape.iter().enumerate().map(size).fold(0.0, f64::max);
     let first = shape

@@ -47,16 +47,25 @@ impl ModalReanalysis {
             let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
             return Ok(motion.modes(&found, count));
         };
-        let space = Lanczos::near(&motion, &self.known.vectors)?;
-        let found = lowest(&motion, count, self.beyond(count), space)?;
-        Ok(motion.modes(&found, count))
+        modes_of_another(&motion, &self.known, count)
     }
+}
 
-    /// Modes beyond so many that lie where the last of these does.
-    fn beyond(&self, count: usize) -> usize {
-        let pairs = self.known.values.windows(2).skip(count.saturating_sub(1));
-        pairs
-            .take_while(|pair| pair[0] <= pair[1] * (1.0 + TOGETHER))
-            .count()
-    }
+/// Those of a structure near that of which modes are known.
+pub(in crate::paths) fn modes_of_another(
+    motion: &Motion,
+    known: &RitzPairs,
+    count: usize,
+) -> Result<Modes> {
+    let space = Lanczos::near(motion, &known.vectors)?;
+    let found = lowest(motion, count, beyond(known, count), space)?;
+    Ok(motion.modes(&found, count))
+}
+
+/// Modes beyond so many that lie where the last of these does.
+fn beyond(known: &RitzPairs, count: usize) -> usize {
+    let pairs = known.values.windows(2).skip(count.saturating_sub(1));
+    pairs
+        .take_while(|pair| pair[0] <= pair[1] * (1.0 + TOGETHER))
+        .count()
 }
