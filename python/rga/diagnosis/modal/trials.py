@@ -28,6 +28,7 @@ from rga.simulation.modal.pairing import (
     parts_of_others,
     unlike_computed,
 )
+from rga.simulation.modal.points import motion_at
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
 
@@ -248,7 +249,7 @@ class ModalTrials(Generic[AnyWindows]):
     def _paired(self, structure: Structure) -> Prediction:
         squares, shapes, *_ = self._modes(structure)
         moving = shapes[:, : len(self.model.nodes), :3]
-        at_points = np.einsum("mpk,pk->mp", moving[:, self._nodes], self._axes)
+        at_points = self.at_points(moving)
         frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
         log_f = np.log(frequencies)
         unlike = unlike_computed(looks, couplings(log_f), at_points)
@@ -300,7 +301,7 @@ class ModalTrials(Generic[AnyWindows]):
 
     def at_points(self, shapes: FloatArray) -> FloatArray:
         """Motion of shapes float[modes, nodes, 3] at the points, float[modes, points]."""
-        return np.asarray(np.einsum("mpk,pk->mp", shapes[:, self._nodes], self._axes))
+        return motion_at(shapes[:, self._nodes], self._axes)
 
     def _modes(self, structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Modes up to where the measured ones may be.

@@ -15,6 +15,7 @@ from rga.model.schema import ExpectedMode, Model
 from rga.model.structure import Structure
 from rga.simulation.contexts import Contexts
 from rga.simulation.modal.pairing import Expected, Pairing, paired, turned
+from rga.simulation.modal.points import motion_at
 from rga.simulation.modal.structures import ModalStructures, computed_modes
 
 #: modes beyond the expected ones that are computed, so that none is missed in its place
@@ -149,7 +150,7 @@ class ModalSimulator:
             except (_core.UnstableStructure, _core.InvalidInput):
                 return None  # a structure by itself tells what is wrong, or has fewer modes
             moving = moving.reshape(len(left), count, len(self._nodes), 3)
-            shapes = np.einsum("rmpk,pk->rmp", moving, self._directions)
+            shapes = motion_at(moving, self._directions)
             frequencies = np.sqrt(squares) / (2 * np.pi)
             enough = (frequencies[:, -1] > self._reach) | (count >= MOST)
             for number in np.flatnonzero(enough):
@@ -195,4 +196,4 @@ class ModalSimulator:
 
     def _at_points(self, structure: Structure, count: int) -> tuple[FloatArray, FloatArray]:
         frequencies, shapes, _, _ = computed_modes(structure, count)
-        return frequencies, np.einsum("mpk,pk->mp", shapes[:, self._nodes, :3], self._directions)
+        return frequencies, motion_at(shapes[:, self._nodes, :3], self._directions)

@@ -13,6 +13,7 @@ from rga.simulation.modal.pairing import (
     unlike_computed,
     unlike_mixed,
 )
+from rga.simulation.modal.points import motion_at
 
 POINTS = 12
 ALONG = np.linspace(0, 1, POINTS)
@@ -129,3 +130,18 @@ def test_mixtures_of_all_computed_modes_at_once_are_those_of_one_after_the_other
     shape = measured[0]
     alone = 1.0 - (shape @ shapes[0]) ** 2 / (shape @ shape) / (shapes[0] @ shapes[0])
     assert at_once[0, 0] < alone
+
+
+def test_a_mode_that_leaves_the_points_still_is_none_that_moves_them() -> None:
+    """Rounding of a mode across, at points that measure upward, has a direction too."""
+    up = np.array([[0.0, 0.0, one] for one in waves(1)[0]])
+    across = np.array([[0.0, 1.0, 1e-13 * one] for one in waves(1)[0]])
+    axes = np.tile([0.0, 0.0, 1.0], (POINTS, 1))
+    modes = expected(waves(1), [4.0])
+    for order in ([across, up], [up, across]):
+        shapes = motion_at(np.array(order), axes)
+        found = paired(modes, np.array([4.0, 4.1]), shapes)
+        assert found.computed.tolist() == [0 if order[0] is up else 1]
+        assert sorted(found.mac[0].round(9)) == [0.0, 1.0]
+        unlike = unlike_computed(modes, np.zeros((2, 2)), shapes)
+        assert sorted(unlike[0].round(9)) == [0.0, 1.0]
