@@ -86,6 +86,23 @@ def test_rows_are_read_alone_as_they_stood_at_a_step(
     assert many < 2 * few
 
 
+def test_messages_of_a_kind_are_found_among_many_of_others(
+    run_in_file: Run, effort: Effort
+) -> None:
+    found = []
+    with run_in_file.step() as step:
+        step.message(kind="R1", row=0, body={})
+    for first, end in ((1, FEW), (FEW, MANY)):
+        for row in range(first, end):
+            with run_in_file.step() as step:
+                step.message(kind="R5", row=row, body={})
+        view = run_in_file.at_step(run_in_file.steps)
+        found.append(effort.of(partial(view.messages, "R1")))
+        assert len(view.messages("R1")) == 1
+    few, many = found
+    assert many < 2 * few
+
+
 def _read(view: RunView, last: int) -> None:
     assert view.row_at(5.0) == 5
     assert view.measured(last).readings.shape == (1, 3)
