@@ -105,5 +105,7 @@ def test_messages_of_a_kind_are_found_among_many_of_others(
 
 def _read(view: RunView, last: int) -> None:
     assert view.row_at(5.0) == 5
+    assert view.measured_at([7, last]).rows.tolist() == [7, last]
+    assert view.packets_about([7, last]) == [(0, LONGEST), (last + 1 - LONGEST, last + 1)]
     assert view.measured(last).readings.shape == (1, 3)
     assert len(view.gaps(last).rows) == 1

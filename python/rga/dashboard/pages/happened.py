@@ -10,7 +10,6 @@ from rga.dashboard.pages.times import of_event
 from rga.dashboard.svg.chart import ChartMark, Window
 from rga.twin.history import Event
 from rga.twin.repository import RunView
-from rga.twin.repository.chunks import LONGEST
 
 #: kinds of events that are marked over time, with the shape and the word of each
 SIGNS = {
@@ -107,7 +106,7 @@ def _seen_from(view: RunView, rows: set[int]) -> dict[int, float]:
     """From when on each row is seen [s since the first row]: a packet is seen as a whole."""
     if not rows:
         return {}
-    packets = view.packets(max(0, min(rows) - LONGEST), view.rows)
+    packets = view.packets_about(list(rows))
     firsts = [first for first, _ in packets]
     last = {}
     for row in rows:

@@ -167,11 +167,12 @@ class TwinReading:
                 return None
             view = self._begun().at_step(self._steps)
             channels, contexts = twin.station.channels, tuple(twin.given.context)
-            measured, followed = self._grown(view, twin)
             first, last = view.row_at(begin), view.row_at(end) + 1
             if last - first <= MOST_ROWS:
                 traces = self._as_they_are(view, twin, max(0, first), last, begin, end)
             else:
+                # A long past is read once, and by nobody who does not look at it.
+                measured, followed = self._grown(view, twin)
                 every = followed.between(begin, end)
                 n = len(channels)
                 traces = (

@@ -14,6 +14,7 @@ from sqlalchemy import (
     Select,
     Table,
     func,
+    or_,
     select,
     tuple_,
 )
@@ -144,6 +145,23 @@ class Source:
         arrays = [joined(chunks, name)[chosen] for name in names]
         return rows[inside], arrays, [chunks[index] for index in owner]
 
+    def about(self, table: Table, rows: Rows, *columns: ColumnElement[Any]) -> list[Row[Any]]:
+        """Columns of the chunks that some rows can be in, in the order in which they were stored.
+
+        Args:
+            table: that holds them in chunks.
+            rows: int[n], ascending.
+            columns: the step and the ordinal among them.
+        """
+        first = table.c.first_row
+        apart = np.flatnonzero(np.diff(rows) > LONGEST) + 1
+        stretches = [part for part in np.split(rows, apart) if len(part)]
+        ranges = [(first > int(part[0]) - LONGEST) & (first <= int(part[-1])) for part in stretches]
+        found: list[Row[Any]] = []
+        for number in range(0, len(ranges), BATCH):
+            found += self.entries(table, *columns, where=[or_(*ranges[number : number + BATCH])])
+        return sorted(found, key=lambda one: (one.step, one.ordinal))
+
     def chosen(
         self, table: Table, names: Sequence[str], rows: Rows
     ) -> tuple[Rows, list[FloatArray]]:
@@ -158,7 +176,7 @@ class Source:
             Those that were stored, int[m], and an array float[m, width] for each name.
         """
         c = table.c
-        index = self.entries(table, c.step, c.ordinal, c.first_row, c.length)
+        index = self.about(table, rows, c.step, c.ordinal, c.first_row, c.length)
         owner = np.full(len(rows), -1)
         for number, chunk in enumerate(index):
             first, end = np.searchsorted(rows, [chunk.first_row, chunk.first_row + chunk.length])

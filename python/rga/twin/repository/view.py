@@ -107,6 +107,15 @@ class RunView:
         found = self._source.entries(tables.measured, c.first_row, c.length, where=where)
         return [(one.first_row, one.first_row + one.length) for one in found]
 
+    def packets_about(self, rows: ArrayLike) -> list[tuple[int, int]]:
+        """First row of, and row behind, the packets that some rows can be in, int[n]."""
+        c = tables.measured.c
+        wanted = np.unique(np.asarray(rows, dtype=np.int64))
+        found = self._source.about(
+            tables.measured, wanted, c.step, c.ordinal, c.first_row, c.length
+        )
+        return sorted({(one.first_row, one.first_row + one.length) for one in found})
+
     def is_forgotten(self, row: int) -> bool:
         """Whether the readings of a row that was taken in are kept no more."""
         c = tables.measured.c
