@@ -8,7 +8,7 @@ from rga.errors import InputError, kind_of
 from rga.model import Model
 from rga.records import Record, RecordMapping, RecordSource, load_record
 from rga.records.frames import is_frame
-from rga.records.table import LARGEST
+from rga.records.record import LARGEST
 
 
 def as_record(

@@ -5,7 +5,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ValidationError
 
 from rga.bounded_files import LARGEST, bytes_of, fault_of, toml_of
@@ -48,7 +47,7 @@ def load_model(path: str | Path) -> Model:
         raise InputError("this is no UTF-8 text", str(path), "save it as UTF-8") from None
     except RecursionError as error:
         raise InputError(fault_of(error), str(path), REMEDY) from None
-    except (ValueError, yaml.YAMLError) as error:
+    except ValueError as error:
         language = LANGUAGES.get(path.suffix.lower(), "JSON")
         raise InputError(
             f"this is no {language} text: {fault_of(error)}", str(path), "mend the syntax"
@@ -140,12 +139,14 @@ def _parse(raw: bytes, suffix: str) -> Any:
     if language == "TOML":
         return toml_of(text)
     if language == "YAML":
+        import yaml
+
         try:
             content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-        except (yaml.YAMLError, RecursionError):
+        except RecursionError:
             raise
         except Exception as error:
-            # Values that are not what their tags say.
+            # Of the language, and of values that are not what their tags say.
             raise ValueError(fault_of(error)) from None
         if _values(content, {}) > MOST_VALUES:
             raise ValueError(f"its aliases make more than {MOST_VALUES} values of it")

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     import polars as pl
     from matplotlib.axes import Axes
 
+#: what no unit of any sensor reaches
+LARGEST = 1e30
+
 
 @dataclass(frozen=True)
 class Record:

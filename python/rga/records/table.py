@@ -10,9 +10,7 @@ import polars as pl
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.records.numbers import Notation, numbers_of
-
-#: what no unit of any sensor reaches
-LARGEST = 1e30
+from rga.records.record import LARGEST
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-import polars as pl
 from sqlalchemy import ColumnElement, Connection, Row, Table, delete, func, select
 
 from rga.files import write_table
@@ -89,6 +88,8 @@ class PacketArchive:
         return sorted(day for day, open_ in found.items() if not open_ and day + DAY <= before)
 
     def _archived(self, table: Table, day: int) -> list[Path]:
+        import polars as pl
+
         inside = (table.c.arrived >= day) & (table.c.arrived < day + DAY)
         files = []
         for number, part in enumerate(self._parts(table, inside), start=1):

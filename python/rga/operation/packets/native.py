@@ -21,7 +21,7 @@ from rga.operation.packets.packet import (
     Number,
     SensorPacket,
 )
-from rga.records.table import LARGEST
+from rga.records.record import LARGEST
 
 _Name = Annotated[str, Meta(min_length=1, max_length=200)]
 

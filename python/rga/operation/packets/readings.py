@@ -9,7 +9,8 @@ import numpy as np
 from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.operation.packets.packet import MICROSECONDS, MOST_BYTES, MOST_CHANNELS, SensorPacket
-from rga.records.table import LARGEST
+from rga.operation.settings_types import is_readable
+from rga.records.record import LARGEST
 
 #: longest time of a payload of others [s]: what keeps readings while the network is away sends
 #: them in batches, and knows nothing of the limit of a packet of rga's own
@@ -135,3 +136,16 @@ def check_json(payload: bytes, where: str) -> None:
         raise InputError(
             f"this is no JSON: {fault_of(error)}", where, "send the whole of it, as JSON is written"
         ) from None
+
+
+def check_names(names: Iterable[str], where: str) -> None:
+    """Whether names can be shown to people.
+
+    Raises:
+        InputError: one has a control character.
+    """
+    for name in names:
+        if not is_readable(name) or "\n" in name:
+            raise InputError(
+                f"the name {name!r} has a control character", where, "name it by visible letters"
+            )

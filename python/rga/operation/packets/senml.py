@@ -12,7 +12,7 @@ from rga.errors import InputError
 from rga.operation.packets.moments import checked
 from rga.operation.packets.packet import MICROSECONDS, SensorPacket
 from rga.operation.packets.readings import SensorReading, check_size, packets_of
-from rga.records.table import LARGEST
+from rga.records.record import LARGEST
 
 #: version that is understood, and the time below which one is relative to now [s]
 _VERSION, _RELATIVE = 10, 2**28

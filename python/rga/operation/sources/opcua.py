@@ -24,7 +24,7 @@ from rga.operation.sources.secrets import credentials_of
 from rga.operation.sources.settings import OpcUaSource
 from rga.operation.sources.source import Inlet
 from rga.operation.sources.written import payloads_of
-from rga.records.table import LARGEST
+from rga.records.record import LARGEST
 
 #: how long to wait before connecting again, at first and at most [s]
 FIRST_WAIT, LONGEST_WAIT = 1.0, 60.0

@@ -37,7 +37,7 @@ from rga.operation.sources.settings import SqlSource
 from rga.operation.sources.source import Inlet
 from rga.operation.sources.table_place import Position, TablePlace, behind, mark_of
 from rga.operation.sources.written import payloads_of
-from rga.records.table import LARGEST
+from rga.records.record import LARGEST
 from rga.records.times.zone import zone_of
 
 #: rows that are kept together

@@ -5,7 +5,8 @@ import polars as pl
 
 from rga.arrays import FloatArray
 from rga.records.numbers import numbers_of
-from rga.records.table import LARGEST, Table
+from rga.records.record import LARGEST
+from rga.records.table import Table
 from rga.records.times import Clock
 
 #: numbers that loggers write where they have no reading

@@ -14,7 +14,8 @@ import polars as pl
 from rga.errors import InputError
 from rga.records.formats.encoding import Text
 from rga.records.formats.points import table_of_points
-from rga.records.table import LARGEST, Table
+from rga.records.record import LARGEST
+from rga.records.table import Table
 
 #: version of SenML that is understood, and the time below which one is relative to now [s]
 _VERSION, _RELATIVE = 10, 2**28
