@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -139,10 +140,8 @@ def _parse(raw: bytes, suffix: str) -> Any:
     if language == "TOML":
         return toml_of(text)
     if language == "YAML":
-        import yaml
-
         try:
-            content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            content = _yaml(text)
         except RecursionError:
             raise
         except Exception as error:
@@ -152,6 +151,39 @@ def _parse(raw: bytes, suffix: str) -> Any:
             raise ValueError(f"its aliases make more than {MOST_VALUES} values of it")
         return content
     return json.loads(text, object_pairs_hook=_unique)
+
+
+def _yaml(text: str) -> Any:
+    """What a text in YAML says.
+
+    Raises:
+        ValueError: a key stands twice.
+        yaml.YAMLError: it is none.
+    """
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
+    try:
+        root = loader.get_single_node()
+        waiting, known = [root], set[int]()
+        while waiting:
+            node = waiting.pop()
+            if id(node) in known:
+                continue
+            known.add(id(node))
+            if isinstance(node, yaml.SequenceNode):
+                waiting += node.value
+            elif isinstance(node, yaml.MappingNode):
+                keys = [(key.tag, key.value) for key, _ in node.value if key.id == "scalar"]
+                counts = Counter(keys)
+                twice = next((one for one in keys if counts[one] > 1), None)
+                if twice is not None:
+                    line = node.start_mark.line + 1
+                    raise ValueError(f"the key {twice[1]!r} stands twice below line {line}")
+                waiting += [one for pair in node.value for one in pair]
+        return None if root is None else loader.construct_document(root)
+    finally:
+        loader.dispose()
 
 
 def _values(content: Any, counted: dict[int, float]) -> float:

@@ -8,6 +8,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+import yaml
 
 from rga.errors import InputError, UnstableStructureError
 from rga.model import load_model, model_content, model_schema, read_model, write_model
@@ -81,6 +82,18 @@ def test_a_key_that_stands_twice_is_refused(tmp_path: Path, two_bars: dict[str, 
     (tmp_path / "model.json").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="'W' stands twice"):
         load_model(tmp_path / "model.json")
+
+
+def test_a_key_that_stands_twice_in_yaml_is_refused(
+    tmp_path: Path, two_bars: dict[str, Any]
+) -> None:
+    text = yaml.safe_dump(two_bars, sort_keys=False)
+    (tmp_path / "model.yaml").write_text(text, encoding="utf-8")
+    assert load_model(tmp_path / "model.yaml").nodes.keys() == two_bars["nodes"].keys()
+    again = text.replace("nodes:\n", "nodes:\n  W: [0, 0, 0]\n", 1)
+    (tmp_path / "model.yaml").write_text(again, encoding="utf-8")
+    with pytest.raises(InputError, match="'W' stands twice below line"):
+        load_model(tmp_path / "model.yaml")
 
 
 def test_what_is_written_is_read_back(tmp_path: Path, two_bars: dict[str, Any]) -> None:

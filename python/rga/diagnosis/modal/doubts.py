@@ -120,8 +120,7 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
         )
     if readings.uncovered:
         warnings.append(
-            f"left out: {counted(readings.uncovered, 'window')} in which a context that drives the "
-            "structure is not known"
+            f"left out: {counted(readings.uncovered, 'window')} in which a context is not known"
         )
     if readings.unsure:
         warnings.append(

@@ -1,7 +1,7 @@
 """Modes that were measured: frequencies window by window, their noise, and shapes."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,7 +66,7 @@ class ModalReadings(ModalWindows):
         doubtful: windows of which another pairing is nearly as probable, where they are many.
         unsure: such windows that are left out, where they are few.
         unnamed: entries of the record that are none of the modes.
-        uncovered: windows left out, as a context that drives the structure is not known then.
+        uncovered: windows left out, as a context is not known then.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
     """
 
@@ -171,13 +171,26 @@ class ModalReadings(ModalWindows):
 
 
 def _covered(record: ModalRecord, needed: set[str], model: Model) -> ModalRecord:
-    """The windows of which all contexts that drive the structure are known."""
+    """The windows of which all contexts are known.
+
+    One that drives nothing, and is known in few windows, is not used: what it does to the others is
+    free all the same, and would be taken for a cause.
+    """
+    rare = {
+        name: f"{name} (known in fewer than half of the windows)"
+        for name, column in record.contexts.items()
+        if name not in needed and np.isfinite(column).mean() < 0.5
+    }
+    if rare:
+        contexts = {name: one for name, one in record.contexts.items() if name not in rare}
+        left_out = (*record.left_out, *rare.values())
+        record = replace(record, contexts=contexts, left_out=left_out)
     known = np.ones(len(record), dtype=bool)
-    for name in sorted(needed & record.contexts.keys()):
+    for name in sorted(record.contexts):
         known &= np.isfinite(record.contexts[name])
         if not known.any():
             raise InputError(
-                f"context {name!r}, which drives the structure, is not known in any window",
+                f"context {name!r} is not known in any window in which the others are",
                 f"model {model.name!r}",
                 f"give a column {name} beside the frequencies, or a record of the same days",
             )

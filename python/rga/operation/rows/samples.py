@@ -63,6 +63,10 @@ class Reader:
 
         return TableReader(self._where, self._model, self._mapping, self.refused)
 
+    def refuse(self, channel: str, why: str) -> None:
+        """Tell that what is sent of a channel is not used."""
+        self._tables.refuse(channel, why)
+
     def format_of(self, payload: bytes) -> PayloadFormat:
         """The format of a payload: as it is stated, else as it looks."""
         return self._stated.format or format_of_bytes(payload)

@@ -21,6 +21,8 @@ from rga.twin.hardware.interface import Station
 MOST_BYTES = 64 * 2**20
 #: after any moment
 EVER = 2**62
+#: why a context is not used
+LATE = "the first rows had none of it, and the twin infers it since; begin another to have it used"
 
 
 class Sealing:
@@ -90,10 +92,19 @@ class Sealing:
             own = [one for one in kept if one.source == source]
             for late_before, some in groupby(own, key=attrgetter("late_before")):
                 read = _read(reader, list(some))
+                self._tell_late(reader, read)
                 if late_before is not None:
                     read = [_within(one, late_before, EVER) for one in read]
                 samples += read
         return samples
+
+    def _tell_late(self, reader: Reader, samples: Sequence[SensorSamples]) -> None:
+        """Tell of contexts that began to come after the first rows: the twin infers them."""
+        station = self._inbox.station
+        if station is not None:
+            known = {*station.channels, *station.measured}
+            for name in {name for one in samples for name in one.names} - known:
+                reader.refuse(name, LATE)
 
     def _station(self, samples: Sequence[SensorSamples]) -> Station:
         """What is mounted, as the configuration and the first rows show it."""

@@ -96,7 +96,7 @@ class TableReader:
             used = {one.column for one in sources.values()}
             for column, _ in columns:
                 if column not in used and column not in self._left_out:
-                    self._refuse(column, _UNKNOWN)
+                    self.refuse(column, _UNKNOWN)
             if len(self._known) >= _MOST_KNOWN:
                 self._known.clear()
             self._known[columns] = {
@@ -110,7 +110,7 @@ class TableReader:
             try:
                 conversion(source.unit, name, self._model, source.column)
             except InputError as error:
-                self._refuse(source.column, error.what)
+                self.refuse(source.column, error.what)
                 return False
         return True
 
@@ -129,9 +129,10 @@ class TableReader:
         for column, _ in columns:
             names = {column, table.names.get(column, column), mapping.channel_of(column)[0]}
             if column not in known and not names & self._left_out:
-                self._refuse(column, _UNKNOWN)
+                self.refuse(column, _UNKNOWN)
 
-    def _refuse(self, column: str, why: str) -> None:
+    def refuse(self, column: str, why: str) -> None:
+        """Tell that what is sent of a column is not used, unless that is told of very many."""
         if len(self._refused) < _MOST_KNOWN:
             self._refused[column] = why
 

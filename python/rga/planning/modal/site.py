@@ -28,6 +28,8 @@ from rga.simulation.modal.pairing import SHAPE_ERROR, Expected, couplings
 
 #: error of what a test says nothing of, where all predict the same
 SILENT = 1.0
+#: share by which a mass may raise a frequency by what solving leaves open
+RAISED = 1e-4
 #: frequencies are told in per cent
 PERCENT = 100.0
 
@@ -132,12 +134,17 @@ class ModalSite:
     def doubtful(self, effects: Mapping[str, Effect]) -> list[int]:
         """Tests in which another pairing of the modes is nearly as probable, and now it is not."""
         effects = self._on_modes(effects)
-        now = self._now.predict(effects).doubtful
-        return [
-            number
-            for number, states in enumerate(self._states)
-            if any(one.predict(effects).doubtful > now for one in states)
-        ]
+        now = self._now.predict(effects)
+        found = []
+        for number, (test, states) in enumerate(zip(self.tests, self._states, strict=True)):
+            then = [one.predict(effects) for one in states]
+            # No mass raises a frequency: where it seems to, two modes have traded their names.
+            traded = test.kind == PARKED_MASS and any(
+                (one.log_f - now.log_f > RAISED).any() for one in then
+            )
+            if traded or any(one.doubtful > now.doubtful for one in then):
+                found.append(number)
+        return found
 
     def measurements(self, effects: Mapping[str, Effect]) -> FloatArray:
         """What would be measured with more effects, float[measurements, sensors].

@@ -46,8 +46,20 @@ def test_windows_without_what_drives_the_structure_are_left_out() -> None:
     known = np.where(record.windows < 12, 0.5 + 0.02 * record.windows, np.nan)
     readings = ModalReadings.of(model, replace(record, contexts={"frost": known}))
     assert (len(readings.time), readings.uncovered) == (12, 8)
-    with pytest.raises(InputError, match="'frost', which drives the structure, is not known"):
+    with pytest.raises(InputError, match="'frost' is not known in any window"):
         ModalReadings.of(model, replace(record, contexts={"frost": np.full(len(record), np.nan)}))
+
+
+def test_windows_without_the_weather_are_left_out_and_a_rare_context_is_not_used() -> None:
+    model, record = measured(1, Hidden(), windows=20)
+    air = np.where(record.windows % 4 == 0, np.nan, 1.0 * record.windows)
+    readings = ModalReadings.of(model, replace(record, contexts={"air": air}))
+    assert (len(readings.time), readings.uncovered) == (15, 5)
+    assert np.isfinite(readings.weather["air"]).all()
+    rare = np.where(record.windows < 12, np.nan, 1.0 * record.windows)
+    readings = ModalReadings.of(model, replace(record, contexts={"air": rare}))
+    assert (len(readings.time), readings.uncovered, readings.weather) == (20, 0, {})
+    assert readings.record.left_out[-1] == "air (known in fewer than half of the windows)"
 
 
 @pytest.mark.parametrize("without", [2, 12])

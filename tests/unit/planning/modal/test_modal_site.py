@@ -1,5 +1,6 @@
 """Measurements of modes that could be made are those of a dense solution, and no better known."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -219,6 +220,20 @@ def test_a_mass_that_makes_it_doubtful_which_mode_is_which_is_told(
     assert doubtful(20.0) == []
     # A third of what the bridge weighs lets modes trade places.
     assert doubtful(120.0) != []
+
+
+def test_a_mass_that_seems_to_raise_a_frequency_has_made_modes_trade_names(
+    model: Model, windows: Windows, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lane = lane_of_masses(model)
+    assert lane is not None
+    planned = ModalSite(model, windows, [], parked(lane, TRUCK), lane, TRUCK, False)
+    assert planned.doubtful({}) == []
+    state = planned._states[0][0]
+    then = state.predict({})
+    traded = replace(then, log_f=then.log_f[:, [1, 0, 2, 3]])
+    monkeypatch.setattr(state, "predict", lambda effects: traded)
+    assert planned.doubtful({}) == [0]
 
 
 def test_play_leaves_no_mode_of_its_own_and_shows_in_none(model: Model, windows: Windows) -> None:
