@@ -103,7 +103,7 @@ class Sealing:
         station = self._inbox.station
         if station is not None:
             known = {*station.channels, *station.measured}
-            for name in {name for one in samples for name in one.names} - known:
+            for name in sorted({name for one in samples for name in one.names} - known):
                 reader.refuse(name, LATE)
 
     def _station(self, samples: Sequence[SensorSamples]) -> Station:
