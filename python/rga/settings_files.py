@@ -8,7 +8,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from rga.bounded_files import bytes_of, fault_of, toml_of
-from rga.errors import InputError
+from rga.errors import InputError, SeveralMistakes
 
 T = TypeVar("T", bound=BaseModel)
 #: bytes of a file of settings
@@ -50,21 +50,50 @@ def validated(kind: type[T], content: dict[str, object], where: str, what: str) 
         what: it holds, as an error calls it: "settings".
 
     Raises:
-        InputError: a setting is unknown or impossible.
+        InputError: a setting is unknown or impossible; where several are, with all of them
+            (`SeveralMistakes`).
     """
     try:
         return kind.model_validate(content)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        keys = [str(part) for part in first["loc"]]
-        place = f"{'.'.join(keys)}: " if keys else ""
-        if len(keys) > 1:
-            tables = [key for key in keys[:-1] if not key.isdecimal()]
-            what = f"keys of [{'.'.join(tables)}]"
-        elif what == "configuration":
-            what = "keys"
-        known = ", ".join(_table_of(kind, first["loc"][:-1]).model_fields)
-        raise InputError(f"{place}{in_words(first)}", where, f"the {what} are {known}") from None
+        found = error.errors(include_url=False)
+        told = list(dict.fromkeys(f"{_place(one['loc'], content)}{in_words(one)}" for one in found))
+        if len(told) > 1:
+            raise SeveralMistakes(told, where, "correct each of them") from None
+        remedy = "correct the value"
+        if found[0]["type"] in _OF_KEYS:
+            remedy = _known_keys(kind, found[0]["loc"], what)
+        raise InputError(told[0], where, remedy) from None
+
+
+#: mistakes that the names of the keys mend
+_OF_KEYS = {"extra_forbidden", "missing", "model_type", "union_tag_not_found"}
+
+
+def _place(keys: Sequence[str | int], content: object) -> str:
+    """Where a mistake stands, as people count and call it: `twin 'east', source 2, path: `."""
+    words, within = "", content
+    for key in keys:
+        if isinstance(key, int):
+            within = within[key] if isinstance(within, list) and key < len(within) else None
+            name = within.get("name") if isinstance(within, dict) else None
+            words += f" {name!r}, " if isinstance(name, str) else f" {key + 1}, "
+            continue
+        if isinstance(within, dict) and key not in within and within.get("kind") == key:
+            continue  # the kind of a table, which is no key of it
+        words += key if not words or words.endswith(", ") else f".{key}"
+        within = within.get(key) if isinstance(within, dict) else None
+    words = words.removesuffix(", ")
+    return f"{words}: " if words else ""
+
+
+def _known_keys(kind: type[BaseModel], keys: Sequence[str | int], what: str) -> str:
+    tables = [key for key in keys[:-1] if isinstance(key, str)]
+    if tables:
+        what = f"keys of [{'.'.join(tables)}]"
+    elif what == "configuration":
+        what = "keys"
+    return f"the {what} are {', '.join(_table_of(kind, keys[:-1]).model_fields)}"
 
 
 def in_words(mistake: Mapping[str, Any]) -> str:
@@ -81,7 +110,11 @@ def in_words(mistake: Mapping[str, Any]) -> str:
         return f"{key} is one of {expected}, and {context['tag']!r} is none"
     if mistake["type"] == "union_tag_not_found":
         return f"say its {context['discriminator'].replace(chr(39), '')}"
-    plain = {"extra_forbidden": "there is no such key", "missing": "it is missing"}
+    plain = {
+        "extra_forbidden": "there is no such key",
+        "missing": "it is missing",
+        "model_type": "give a table",
+    }
     message: str = mistake["msg"]
     return plain.get(mistake["type"], message.removeprefix("Value error, "))
 

@@ -146,7 +146,8 @@ def _parse(raw: bytes, suffix: str) -> Any:
             raise
         except Exception as error:
             # Of the language, and of values that are not what their tags say.
-            raise ValueError(fault_of(error)) from None
+            told = fault_of(error).replace(' in "<unicode string>",', " in")
+            raise ValueError(told) from None
         if _values(content, {}) > MOST_VALUES:
             raise ValueError(f"its aliases make more than {MOST_VALUES} values of it")
         return content

@@ -19,6 +19,7 @@ from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.overtaken import Overtaken
+from rga.operation.rows.remarks import ChannelRemarks
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
 from rga.operation.service_clock import ServiceClock, microseconds
@@ -119,9 +120,9 @@ class ServedTwin:
         last = self._counted_again.get(source)
         return last is not None and self._clock.monotonic() - last < self._settings.rows.patience
 
-    def refused_channels(self, source: str) -> dict[str, str]:
-        """Channels of a source that are not used, and why."""
-        return dict(self._readers[source].refused)
+    def remarks(self, source: str) -> ChannelRemarks:
+        """Channels of a source that are not used, or not used as they say."""
+        return self._readers[source].remarks
 
     def receive(
         self,

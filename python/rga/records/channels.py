@@ -9,6 +9,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.quantities import counted
+from rga.records.mapped_channels import check_channels
 from rga.records.mapping import Channel, FileMapping
 from rga.records.numbers import missing_words
 from rga.records.table import Table
@@ -22,12 +23,14 @@ class ColumnSource:
     Attributes:
         column: that has it.
         channel: how it is read.
-        unit: in which the file has it; None: that is not said.
+        unit: in which it is read; None: that is not said.
+        outweighed: the unit that the file states where the mapping states another; None: none.
     """
 
     column: str
     channel: Channel
     unit: str | None
+    outweighed: str | None = None
 
 
 def sources_of(
@@ -38,10 +41,13 @@ def sources_of(
     Raises:
         InputError: the mapping names what is not there, a column has no meaning, or two have the
             same.
+
+    Whether a unit can be that of its channel is for `unit_fault` to say.
     """
     known = {**model.sensors, **model.context}
     where = str(table.path)
-    named = _named(table, mapping, known)
+    check_channels(mapping, model, where)
+    named = _named(table, mapping)
     sources: dict[str, ColumnSource] = {}
     unknown = []
     left_out = mapping.left_out.keys()
@@ -63,9 +69,9 @@ def sources_of(
             )
         else:
             channel = mapping.channels.get(name, Channel())
-            if channel.unit is None:
-                _check_unit(table, column, name, model)
-            sources[name] = ColumnSource(column, channel, channel.unit or unit)
+            stated = channel.unit
+            outweighed = unit if stated and unit and contradict(stated, unit) else None
+            sources[name] = ColumnSource(column, channel, stated or unit, outweighed)
     if unknown and mapping.unknown == "refused":
         raise InputError(
             "the model has no sensor or context variable for " + quoted(unknown, len(unknown)),
@@ -77,6 +83,35 @@ def sources_of(
     return sources
 
 
+def unit_fault(table: Table, name: str, source: ColumnSource, model: Model) -> InputError | None:
+    """Why the unit of a column cannot be that of its channel; None: it can.
+
+    Args:
+        table: that has the column.
+        name: of the sensor or context variable.
+        source: where it stands in the table.
+        model: of the sensor or context variable.
+    """
+    column = source.column
+    where = f"{table.path}, column {column!r}"
+    named, stated = name_and_unit(column)[1], table.units.get(column)
+    contradicts = named is not None and stated is not None and contradict(named, stated)
+    if source.channel.unit is None and contradicts:
+        sensor = model.sensors.get(name)
+        unit = sensor.unit if sensor else model.context[name].unit
+        return InputError(
+            f"the name of {name!r} says {named!r}, the line of units says {stated!r}",
+            where,
+            f'state it: {name} = {{ unit = "{unit}" }} under [channels] in import.toml',
+        )
+    if source.unit is not None:
+        try:
+            conversion(source.unit, name, model, where)
+        except InputError as error:
+            return error
+    return None
+
+
 def values_of(
     table: Table, mapping: FileMapping, name: str, source: ColumnSource, model: Model
 ) -> FloatArray:
@@ -85,6 +120,8 @@ def values_of(
     Raises:
         InputError: a cell holds no number, there is none at all, or the unit is of something else.
     """
+    if fault := unit_fault(table, name, source, model):
+        raise fault
     where = f"{table.path}, column {source.column!r}"
     values = table.numbers(source.column, (*mapping.missing, *source.channel.missing))
     if mapping.empty == "refused" and np.isnan(values).all():
@@ -132,6 +169,20 @@ def told_of(
     return told
 
 
+def doubts_of(sources: Mapping[str, ColumnSource]) -> dict[str, str]:
+    """By column, what the reader of a table should know of its unit.
+
+    >>> doubts_of({"D1": ColumnSource("LVDT 5", Channel(unit="cm"), "cm", "mm")})
+    {'LVDT 5': 'import.toml says cm, and what comes says mm: it is read in cm'}
+    """
+    return {
+        one.column: f"import.toml says {one.unit}, and what comes says {one.outweighed}: "
+        f"it is read in {one.unit}"
+        for one in sources.values()
+        if one.outweighed
+    }
+
+
 def unused_in(table: Table, mapping: FileMapping, model: Model) -> dict[str, str]:
     """Channels of a table that are left out, and sensors that it has not, with the reason."""
     present = {
@@ -156,17 +207,11 @@ def quoted(names: Sequence[str], most: int = 8) -> str:
     return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
 
 
-def _named(table: Table, mapping: FileMapping, known: Mapping[str, object]) -> dict[str, str]:
+def _named(table: Table, mapping: FileMapping) -> dict[str, str]:
     """Channel by the column that the mapping names for it."""
     where = str(table.path)
     named: dict[str, str] = {}
     for name, channel in mapping.channels.items():
-        if name not in known:
-            raise InputError(
-                f"the mapping names the channel {name!r}, which the model does not have",
-                where,
-                "name a sensor or context variable of the model",
-            )
         if channel.column is None:
             continue
         column = channel.column
@@ -187,19 +232,6 @@ def _named(table: Table, mapping: FileMapping, known: Mapping[str, object]) -> d
             )
         named[column] = name
     return named
-
-
-def _check_unit(table: Table, column: str, name: str, model: Model) -> None:
-    """Refuses a unit in the name of a column that another statement of its unit contradicts."""
-    named, stated = name_and_unit(column)[1], table.units.get(column)
-    if named is not None and stated is not None and contradict(named, stated):
-        sensors = {one: sensor.unit for one, sensor in model.sensors.items()}
-        unit = sensors.get(name) or model.context[name].unit
-        raise InputError(
-            f"the name of {name!r} says {named!r}, the line of units says {stated!r}",
-            f"{table.path}, column {column!r}",
-            f'state it: {name} = {{ unit = "{unit}" }} under [channels] in import.toml',
-        )
 
 
 def _name_and_unit(

@@ -11,7 +11,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
-from rga.records.channels import sources_of, told_of, unused_in, values_of
+from rga.records.channels import doubts_of, sources_of, told_of, unused_in, values_of
 from rga.records.mapping import FileMapping
 from rga.records.table import Table
 from rga.records.times import Clock, read_clock
@@ -54,7 +54,9 @@ def measured(table: Table, mapping: FileMapping, model: Model) -> LoggerData:
     named = [] if table.format == "plain text" else [f"{table.path.name} is read as {table.format}"]
     notes = (*named, *table.notes, *clock.notes, *told_of(table, mapping, sources, model))
     unused = unused_in(table, mapping, model)
-    return LoggerData(str(table.path), clock, values, unused, notes, table.warnings, table.sha256)
+    doubts = [f"column {column!r}: {why}" for column, why in doubts_of(sources).items()]
+    warnings = (*table.warnings, *doubts)
+    return LoggerData(str(table.path), clock, values, unused, notes, warnings, table.sha256)
 
 
 def in_time(parts: Sequence[LoggerData]) -> LoggerData:

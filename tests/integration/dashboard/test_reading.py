@@ -63,6 +63,24 @@ def test_series_in_blocks_is_that_of_the_repository(
             np.testing.assert_allclose(trace.least[k], np.nanmin(rows, axis=0), rtol=1e-6)
 
 
+def test_others_look_at_a_twin_while_its_long_past_is_read(
+    reading: TwinReading, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(twin_reading, "MOST_ROWS", 10)
+    monkeypatch.setattr(twin_reading, "BATCH", 20)
+    seen: list[object] = []
+
+    def others(_: float) -> None:
+        other = Thread(target=lambda: seen.append(reading.now()))
+        other.start()
+        other.join(timeout=10.0)
+
+    monkeypatch.setattr(twin_reading.time, "sleep", others)
+    assert reading.series(0.0, np.inf, 10_000) is not None
+    assert len(seen) > 3
+    assert None not in seen
+
+
 @pytest.mark.parametrize(("begin", "end"), [(0.0, 6000.0), (6000.0, 6001.0), (-50.0, 1.0)])
 def test_a_stretch_has_its_rows_and_no_others(
     reading: TwinReading, begin: float, end: float

@@ -224,7 +224,7 @@ def test_the_same_rows_come_through_http(service: Callable[[str], Service]) -> N
     server.should_exit = True
     thread.join()
     for twin in made.twins.values():
-        assert twin.refused_channels("http") == {}
+        assert twin.remarks("http").refused == {}
     refused = sum(made.twins["line_protocol"].packets.account().values(), Account()).refused
     assert refused == 2
     expected = rows_of(made.twins["native"])

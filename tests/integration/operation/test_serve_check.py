@@ -139,8 +139,31 @@ def test_a_unit_of_something_else_is_told(model: Model, tmp_path: Path) -> None:
     write_logger(tmp_path, model, header={name: f"{name} (kg)"})
     code, said = checked(tmp_path)
     assert code == 2
-    assert "cannot be used" in said
-    assert "kg" in said
+    assert f"the channel '{name} (kg)' is not used: the unit 'kg' of {name!r}" in said
+    assert f"nobody sends {name!r}" in said
+
+
+def test_a_unit_that_the_mapping_outweighs_is_told(model: Model, tmp_path: Path) -> None:
+    name = next(iter(model.sensors))
+    write_logger(tmp_path, model, header={name: f"{name} (m)"})
+    config = tmp_path / "serve.toml"
+    text = config.read_text("utf-8").replace(FOLDER, f'{FOLDER}\nmapping = "import.toml"', 1)
+    config.write_text(text, "utf-8")
+    (tmp_path / "import.toml").write_text(f'[channels]\n{name} = {{ unit = "cm" }}\n', "utf-8")
+    assert "import.toml says cm, and what comes says m: it is read in cm" in checked(tmp_path)[1]
+
+
+def test_stated_columns_are_looked_at_before_anything_comes(model: Model, tmp_path: Path) -> None:
+    first, *others = channels(model)
+    write_logger(tmp_path, model)
+    config = tmp_path / "serve.toml"
+    columns = ", ".join(f'"{one}"' for one in ("time", "D99", *others))
+    row = f'kind = "http"\nformat = "row"\ncolumns = [{columns}]'
+    config.write_text(config.read_text("utf-8").replace(FOLDER, row, 1), "utf-8")
+    code, said = checked(tmp_path)
+    assert code == 2
+    assert "the channel 'D99' is not used: the model has no such channel" in said
+    assert f"nobody sends {first!r}" in said
 
 
 @pytest.mark.parametrize(
@@ -196,6 +219,7 @@ def test_a_folder_that_is_away_is_told(model: Model, tmp_path: Path) -> None:
         ("serve.toml", "[[twin]]", 'certificate = "gone"\nkey = "gone"\n[[twin]]', "TLS"),
         ("serve.toml", "[[twin]]", "[alarms]\ndisk = 0.999999\n[[twin]]", "of the disk is free"),
         ("serve.toml", FOLDER, f'{FOLDER}\nmapping = "gone"', "gone"),
+        ("serve.toml", FOLDER, f'{FOLDER}\nmapping = "units.toml"', "'kg' of 'D1' is not one of"),
         (
             "serve.toml",
             FOLDER,
@@ -214,6 +238,7 @@ def test_each_file_that_is_wrong_is_told(
     model: Model, tmp_path: Path, file: str, old: str, new: str, words: str
 ) -> None:
     write_logger(tmp_path, model)
+    (tmp_path / "units.toml").write_text('[channels]\nD1 = { unit = "kg" }\n', "utf-8")
     text = (tmp_path / file).read_text("utf-8")
     assert old in text
     (tmp_path / file).write_text(text.replace(old, new, 1), "utf-8")

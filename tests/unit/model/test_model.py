@@ -84,6 +84,14 @@ def test_a_key_that_stands_twice_is_refused(tmp_path: Path, two_bars: dict[str, 
         load_model(tmp_path / "model.json")
 
 
+def test_a_mistake_of_yaml_is_told_by_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "model.yaml"
+    path.write_text("nodes:\n  A: [0, 0\nmembers: 3\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"no YAML text: .* in line 3") as raised:
+        load_model(path)
+    assert "unicode string" not in str(raised.value)
+
+
 def test_a_key_that_stands_twice_in_yaml_is_refused(
     tmp_path: Path, two_bars: dict[str, Any]
 ) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rga.errors import InputError
+from rga.errors import InputError, SeveralMistakes
 from rga.operation.configuration import read_configuration
 from rga.operation.served_twin import live_settings
 from rga.operation.sources.settings import FolderSource, OpcUaSource, SqlSource
@@ -100,7 +100,7 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"pratt-7"', '"../up"', "twin.0.name"),
+        ('"pratt-7"', '"../up"', "twin '../up', name: "),
         ('"60 s"', '"60"', "no duration"),
         ('"60 s"', "60", "no duration"),
         ('"60 s"', '"0.1 ms"', "a millisecond at least"),
@@ -114,7 +114,7 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ("127.0.0.1:8471", "127.0.0.1:99999", "ports go up to 65535"),
         ('"mqtt"', '"kafka"', "kind is one of http, mqtt, folder, sql, opcua, and 'kafka' is none"),
         ('kind = "folder"', 'kin = "folder"', "say its kind"),
-        ("rows = {", "rws = {}\nrows = {", "twin.0.rws: there is no such key"),
+        ("rows = {", "rws = {}\nrows = {", "twin 'pratt-7', rws: there is no such key"),
         ("rows = {", "rws = {}\nrows = {", "the keys of [twin] are name, model, settings"),
         ("[service]", "[service]\nport = 1", "the keys of [service] are listen, data"),
         (
@@ -128,10 +128,10 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ('path = "logger"', 'path = "logger"\nfiles = "../x"', "names within the folder"),
         ('path = "logger"', 'path = "logger"\nformat = "yaml"', "format"),
         ('channel_topic = "site/{channel}"', "", "needs channel_topic"),
-        ('format = "number"', "", "needs channel_topic"),
+        ('format = "number"', "", "channel_topic is of numbers"),
         ("site/{channel}", "site/channel", "one level of the topic"),
         ('columns = ["time", "D1"]', "", "needs columns"),
-        ('format = "row"', "", "needs columns"),
+        ('format = "row"', "", "columns are of rows"),
         ('format = "row"', 'format = "number"', "names no channel"),
         ('["time", "D1"]', '["D1", "D1"]', "name every column once"),
         ("postgresql://rga@plant", "postgresql://rga:secret@plant", "url holds a password"),
@@ -143,12 +143,12 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ('nodes = { D1 = "ns=2;s=D1" }', "nodes = {}", "nodes"),
         ('"12 an hour"', '"12 a week"', "no rate"),
         ('"12 an hour"', '"0 an hour"', "no rate"),
-        ('"silent"', '"mood"', "notify.0.on"),
-        ('on = ["alarm", "proposal", "silent", "source", "disk"]', "on = []", "notify.0.on"),
+        ('"silent"', '"mood"', "notify 1, on 3: "),
+        ('on = ["alarm", "proposal", "silent", "source", "disk"]', "on = []", "notify 1, on: "),
         ('"07:00"', '"07:00+01:00"', "it is in UTC"),
         ('"07:00"', '"noon"', "all_is_well"),
         ("disk = 0.2", "disk = 2", "alarms.disk"),
-        ("[[notify]]", "[[notify]]\nurl = 'x'", "notify.0.url"),
+        ("[[notify]]", "[[notify]]\nurl = 'x'", "notify 1, url: "),
         ("[service]", "[service]\nlink = 'bridge'", "service.link"),
         ('"0 s"', '"-1 s"', "no duration"),
         ('kind = "folder"', 'kind = "folder"\nname = "mqtt"', "two sources are called 'mqtt'"),
@@ -188,3 +188,12 @@ def test_false_alarms_are_rows_between_them(tmp_path: Path, said: str, rows: flo
         with pytest.raises(InputError, match=words):
             live_settings(path, twin.arl0)
         live_settings(path, None)
+
+
+def test_every_mistake_is_told_with_its_place(tmp_path: Path) -> None:
+    text = SOUND.replace("rows = {", "rws = {}\nrows = {", 1).replace('"mqtt"', '"kafka"', 1)
+    with pytest.raises(SeveralMistakes) as raised:
+        read_configuration(written(tmp_path, text))
+    assert len(raised.value.mistakes) == 2
+    assert "twin 'pratt-7', rws: there is no such key" in raised.value.mistakes
+    assert any(one.startswith("twin 'pratt-7', source 2: kind is") for one in raised.value.mistakes)

@@ -285,7 +285,7 @@ def test_units_of_a_payload_are_turned_into_those_of_the_model(twin: Twin) -> No
     assert rows[0, 1] == 2.0
     assert np.isnan(rows[0, 2])
     assert rows[0, -1] == 11
-    refused = twin.readers["logger"].refused
+    refused = twin.readers["logger"].remarks.refused
     assert set(refused) == {"D2", "spare"}
     assert "kg" in refused["D2"]
 
@@ -392,9 +392,9 @@ def test_a_context_that_begins_to_come_after_the_first_rows_is_told(twin: Twin) 
         packet = SensorPacket(Number("s", k), channels, times[rows], own)
         assert twin.send("logger", write_packet(packet)) == "waiting"
         twin.sealing.seal(twin.packets.latest(), silent=())
-        assert not reader.refused or channels == CHANNELS
+        assert not reader.remarks.refused or channels == CHANNELS
     twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     station = twin.inbox.station
     assert station is not None
     assert station.measured == ()
-    assert "the first rows had none of it" in reader.refused["temperature"]
+    assert "the first rows had none of it" in reader.remarks.refused["temperature"]

@@ -36,7 +36,13 @@ Start = Annotated[
     typer.Option("--start", metavar="TIME", help="Of the first row, with a zone, in place of its."),
 ]
 Rows = Annotated[
-    int, typer.Option("--rows", metavar="N", parser=whole(1), help="Rows of a packet.")
+    int,
+    typer.Option(
+        "--rows",
+        metavar="N",
+        parser=whole(1),
+        help="Rows of a packet, which is of a minute at most.",
+    ),
 ]
 Speed = Annotated[
     float | None,

@@ -11,7 +11,7 @@ from rga.operation.service_clock import ServiceClock
 from rga.operation.sources.clock import in_words
 from rga.quantities import counted
 
-#: channels that are not used, and that words name
+#: channels that words name
 MOST_NAMED = 5
 
 
@@ -70,27 +70,30 @@ class SourceWatch:
             clock = self._twin.clock_fault(name)
             if clock is not None:
                 found.append(Condition(self._key("clock", name), f"source {name}: {clock}", now))
-            if refused := self._twin.refused_channels(name):
-                key = self._key("refused", name)._replace(kind="quality")
-                words = f"source {name}: {_not_used(refused)}"
-                found.append(Condition(key, words, now, size=len(refused)))
+            remarks = self._twin.remarks(name)
+            for cause, told in (("refused", remarks.refused), ("doubted", remarks.doubted)):
+                if told:
+                    key = self._key(cause, name)._replace(kind="quality")
+                    words = f"source {name}: {_remarked(cause, dict(told))}"
+                    found.append(Condition(key, words, now, size=len(told)))
         return found
 
     def _key(self, cause: str, source: str) -> ConditionKey:
         return ConditionKey(self._twin.name, "source", cause, source)
 
 
-def _not_used(refused: Mapping[str, str]) -> str:
-    """Channels that are not used, and why.
+def _remarked(cause: str, told: Mapping[str, str]) -> str:
+    """Channels that are not used, or are doubtful, and why.
 
-    >>> _not_used({"D7": "the model has no such channel"})
+    >>> _remarked("refused", {"D7": "the model has no such channel"})
     '1 channel is not used: D7 (the model has no such channel)'
     """
-    listed = [f"{name} ({why})" for name, why in [*refused.items()][:MOST_NAMED]]
-    if len(refused) > MOST_NAMED:
+    listed = [f"{name} ({why})" for name, why in [*told.items()][:MOST_NAMED]]
+    if len(told) > MOST_NAMED:
         listed.append("...")
-    are = "is" if len(refused) == 1 else "are"
-    return in_a_line(f"{counted(len(refused), 'channel')} {are} not used: {', '.join(listed)}")
+    are = "is" if len(told) == 1 else "are"
+    what = "not used" if cause == "refused" else "doubtful"
+    return in_a_line(f"{counted(len(told), 'channel')} {are} {what}: {', '.join(listed)}")
 
 
 class _Missing:

@@ -81,6 +81,7 @@ class HttpSender:
         self, url: str, token: str | None = None, told: Callable[[str], None] = _nothing_told
     ) -> None:
         parts, self._place, self._silence = _parts_of(url), url, _Silence(told)
+        self._told, self._refused = told, False
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
         self._headers = {"Content-Type": "application/octet-stream"}
@@ -97,7 +98,8 @@ class HttpSender:
         while True:
             try:
                 asked = Request(self._url, payload, self._headers, method="POST")
-                with urlopen(asked, timeout=ANSWER):
+                with urlopen(asked, timeout=ANSWER) as answer:
+                    self._hear(answer.read(), number)
                     return
             except HTTPError as error:
                 if error.code not in (429, 503, 507):
@@ -119,6 +121,14 @@ class HttpSender:
 
     def finish(self) -> None:
         """Nothing is on its way."""
+
+    def _hear(self, answer: bytes, number: Number | None) -> None:
+        """Tell the first time that a packet was refused; garbage is meant to be."""
+        if number is None or self._refused:
+            return
+        if refused := json.loads(answer)["refused"]:
+            self._refused = True
+            self._told(f"the service keeps packet {number.sequence} aside: {refused[0]}")
 
 
 def _parts_of(url: str) -> SplitResult:

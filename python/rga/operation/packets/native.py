@@ -106,8 +106,11 @@ def read_packet(payload: bytes, where: str) -> SensorPacket:
     try:
         written = (_MESSAGE_PACK if payload[:1] in _MAPS else _JSON).decode(payload)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError, OverflowError) as error:
+        why = str(error)[:200] or "it is nested too deep"
+        if payload[:1] not in _MAPS and payload.lstrip()[:1] != b"{":
+            why = "it begins neither as an object of JSON nor as a map of MessagePack"
         raise InputError(
-            f"this is no packet: {str(error)[:200] or 'it is nested too deep'}",
+            f"this is no packet: {why}",
             where,
             "write it as `rga schema packet` says",
         ) from None

@@ -58,7 +58,9 @@ def packets_of(
     for channel, moment, value in points:
         if abs(value) > LARGEST:
             raise InputError(
-                f"nothing measures {value:g}", where, "leave a reading out where it is missing"
+                f"{channel[:40]!r}: nothing measures {value:g}",
+                where,
+                "leave a reading out where it is missing",
             )
         own = layers.setdefault(channel, [{}])
         layer = own[0]

@@ -1,5 +1,6 @@
 """A twin that is served, kept open for those who look at it."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -23,8 +24,8 @@ from rga.twin.twin import Twin
 
 #: rows that are read as they are; more are shown as blocks
 MOST_ROWS = 4096
-#: rows that are read at a time
-BATCH = 20_000
+#: rows that are read at a time, and how long others may look at the twin before the next [s]
+BATCH, REST = 20_000, 0.001
 
 
 @dataclass(frozen=True)
@@ -161,6 +162,8 @@ class TwinReading:
         Returns:
             None before the twin has begun.
         """
+        while not self._is_read(begin, end):
+            time.sleep(REST)
         with self._lock:
             twin = self.twin
             if twin is None:
@@ -171,8 +174,7 @@ class TwinReading:
             if last - first <= MOST_ROWS:
                 traces = self._as_they_are(view, twin, max(0, first), last, begin, end)
             else:
-                # A long past is read once, and by nobody who does not look at it.
-                measured, followed = self._grown(view, twin)
+                _, measured, followed = self._grown(view, twin)
                 every = followed.between(begin, end)
                 n = len(channels)
                 traces = (
@@ -183,44 +185,60 @@ class TwinReading:
                 )
             return Series(channels, contexts, *(one.at_most(points) for one in traces))
 
-    def elapsed(self, time: datetime) -> float:
-        """Seconds from the first row to a time; 0 before the twin has begun."""
+    def elapsed(self, moment: datetime) -> float:
+        """Seconds from the first row to a moment; 0 before the twin has begun."""
         twin = self.twin
         if twin is None:
             return 0.0
-        return (time - datetime.fromisoformat(str(twin.station.start))).total_seconds()
+        return (moment - datetime.fromisoformat(str(twin.station.start))).total_seconds()
 
     def _as_they_are(
         self, view: RunView, twin: Twin, first: int, last: int, begin: float, end: float
     ) -> tuple[Trace, ...]:
         seen = view.measured(first, last)
         inside = (seen.time >= begin) & (seen.time < end)
-        time = seen.time
+        moments = seen.time
         followed = self._followed_rows(view, twin, first, last)
         n = len(twin.station.channels)
         parts = (
-            seen.readings.reshape(len(time), n),
+            seen.readings.reshape(len(moments), n),
             followed[:, :n],
             followed[:, n : 2 * n],
             followed[:, 2 * n :],
         )
-        return tuple(as_trace(time[inside], one[inside]) for one in parts)
+        return tuple(as_trace(moments[inside], one[inside]) for one in parts)
 
-    def _grown(self, view: RunView, twin: Twin) -> tuple[Overview, Overview]:
-        """The whole past in blocks, with the rows that have come since it was last looked at."""
+    def _is_read(self, begin: float, end: float) -> bool:
+        """Whether all is read that a series takes; if not, some more is read.
+
+        A long past is read once, and by nobody who does not look at it.
+        """
+        with self._lock:
+            twin = self.twin
+            if twin is None:
+                return True
+            view = self._begun().at_step(self._steps)
+            if view.row_at(end) + 1 - view.row_at(begin) <= MOST_ROWS:
+                return True
+            return self._grown(view, twin)[0]
+
+    def _grown(self, view: RunView, twin: Twin) -> tuple[bool, Overview, Overview]:
+        """The past in blocks, with some rows more, and whether these are all."""
         n, contexts = len(twin.station.channels), len(twin.given.context)
         if self._measured is None or self._followed is None:
             self._measured, self._followed = Overview(n), Overview(2 * n + contexts)
-        rows = view.rows
-        while (first := self._measured.rows) < rows:
+        rows, first = view.rows, self._measured.rows
+        if first < rows:
             seen = view.measured(first, min(rows, first + BATCH))
             self._measured.append(seen.time, seen.readings.reshape(len(seen.time), n))
-        rows = standing_of(view).row if standing_of(view).calibrated else 0
-        while (first := self._followed.rows) < rows:
-            last = min(rows, first + BATCH)
-            time = view.measured(first, last).time
-            self._followed.append(time, self._followed_rows(view, twin, first, last))
-        return self._measured, self._followed
+        standing = standing_of(view)
+        known, first = standing.row if standing.calibrated else 0, self._followed.rows
+        if first < known:
+            last = min(known, first + BATCH)
+            moments = view.measured(first, last).time
+            self._followed.append(moments, self._followed_rows(view, twin, first, last))
+        is_all = self._measured.rows >= rows and self._followed.rows >= known
+        return is_all, self._measured, self._followed
 
     def _followed_rows(self, view: RunView, twin: Twin, first: int, last: int) -> FloatArray:
         """Simulated, gap and inferred contexts of rows, at the time, float[n, 2 channels + k]."""

@@ -1,7 +1,7 @@
 """A cell of the grid in time, and what the samples within it come to."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -20,11 +20,14 @@ class SensorSamples:
         names: sensors and context variables.
         times: int64[n], microseconds since 1970 (UTC), in any order.
         values: float64[n, names], NaN where one is missing.
+        refused: columns that came beside them and are not used though nobody leaves them out,
+            with the reason.
     """
 
     names: tuple[str, ...]
     times: Moments
     values: FloatArray
+    refused: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

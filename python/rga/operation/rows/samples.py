@@ -1,6 +1,6 @@
 """Payloads as samples in the names and units of a model."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import tzinfo
 from functools import cached_property
@@ -16,6 +16,8 @@ from rga.operation.packets.formats import PayloadFormat, StatedFormat, format_of
 from rga.operation.packets.packet import SensorPacket
 from rga.operation.packets.readings import check_json, check_names
 from rga.operation.rows.cells import SensorSamples
+from rga.operation.rows.remarks import ChannelRemarks
+from rga.records.mapped_channels import check_channels
 from rga.records.mapping import FileMapping, TimeColumns
 
 if TYPE_CHECKING:
@@ -36,9 +38,13 @@ class Reader:
         mapping: what the names, units and signs of the logger mean.
         stated: of the format of its payloads.
 
+    Raises:
+        InputError: the mapping speaks of channels or units that the model does not have, or of no
+            zone that is known.
+
     Attributes:
         left_out: names that the mapping leaves out.
-        refused: by channel, why what is sent of it is not used.
+        remarks: what is to be known of its channels.
     """
 
     def __init__(
@@ -48,8 +54,9 @@ class Reader:
         mapping: FileMapping,
         stated: StatedFormat | None = None,
     ) -> None:
+        check_channels(mapping, model, f"import.toml of source {source!r}")
         self.left_out = frozenset(mapping.left_out)
-        self.refused: dict[str, str] = {}
+        self.remarks = ChannelRemarks()
         self._where, self._model = Path(source), model
         self._stated = replace(stated or StatedFormat(), zone=_zone(mapping, source))
         time = mapping.time.model_copy(update={"repeated_hour": "refused"})
@@ -61,15 +68,13 @@ class Reader:
         # A service starts without what reads files, and needs it with the first payload.
         from rga.operation.rows.tables import TableReader
 
-        return TableReader(self._where, self._model, self._mapping, self.refused)
+        return TableReader(self._where, self._model, self._mapping, self.remarks)
 
-    def refuse(self, channel: str, why: str) -> None:
-        """Tell that what is sent of a channel is not used."""
-        self._tables.refuse(channel, why)
-
-    def format_of(self, payload: bytes) -> PayloadFormat:
-        """The format of a payload: as it is stated, else as it looks."""
-        return self._stated.format or format_of_bytes(payload)
+    def format_of(self, payload: bytes, named: PayloadFormat | None) -> PayloadFormat:
+        """The format of a payload: as its sender names it, as it is stated, or as it looks."""
+        if named == "file" and self._stated.format == "row":
+            return "row"  # a row without names is text/csv too
+        return named or self._stated.format or format_of_bytes(payload)
 
     def packets_of(
         self, kind: PayloadFormat, payload: bytes, where: str, arrived: int
@@ -88,8 +93,25 @@ class Reader:
         packets = read_packets(kind, payload, where, arrived, self._stated)
         for packet in packets:
             check_names(packet.channels, where)
-            self._tables.sources(_columns(packet))
+            self._tables.used(_columns(packet))
         return packets
+
+    def stated_names(self) -> set[str]:
+        """Sensors and contexts of rows whose columns are stated; none where they are not."""
+        columns = set(self._stated.columns) - set(self._mapping.time.columns)
+        if not columns:
+            return set()
+        return set(self._tables.used(tuple((one, "") for one in sorted(columns))).sources)
+
+    def check_used(self, packets: Sequence[SensorPacket], where: str) -> None:
+        """Whether something of packets is used.
+
+        Raises:
+            InputError: nothing is, and the mapping does not leave all of it out.
+        """
+        used = [self._tables.used(_columns(one)) for one in packets]
+        if not any(one.sources for one in used):
+            _check_none_refused({k: why for one in used for k, why in one.refused.items()}, where)
 
     def of_rows(
         self, kind: PayloadFormat, payload: bytes, where: str, arrived: int
@@ -142,6 +164,27 @@ class Reader:
         except InputError:
             check_json(payload, str(self._where))
             raise
+
+
+def check_samples(samples: SensorSamples, where: str) -> None:
+    """Whether something of rows is used.
+
+    Raises:
+        InputError: nothing is, and the mapping does not leave all of it out.
+    """
+    if not samples.names:
+        _check_none_refused(samples.refused, where)
+
+
+def _check_none_refused(refused: Mapping[str, str], where: str) -> None:
+    if refused:
+        name, why = next(iter(refused.items()))
+        more = f" and {len(refused) - 1} more" if len(refused) > 1 else ""
+        raise InputError(
+            f"none of its channels is used: {name}{more} ({why})",
+            where,
+            "name them under [channels] or [unused] in import.toml",
+        )
 
 
 def _columns(packet: SensorPacket) -> "Columns":

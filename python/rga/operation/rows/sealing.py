@@ -104,7 +104,7 @@ class Sealing:
         if station is not None:
             known = {*station.channels, *station.measured}
             for name in sorted({name for one in samples for name in one.names} - known):
-                reader.refuse(name, LATE)
+                reader.remarks.refuse(name, LATE)
 
     def _station(self, samples: Sequence[SensorSamples]) -> Station:
         """What is mounted, as the configuration and the first rows show it."""

@@ -1,6 +1,7 @@
 """Payloads and packets as tables of named columns, as records of files are."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
 
@@ -13,18 +14,29 @@ from rga.model import Model
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Moments
 from rga.operation.packets.readings import check_names, check_size
 from rga.operation.rows.cells import SensorSamples
-from rga.records.channels import ColumnSource, sources_of, values_of
+from rga.operation.rows.remarks import MOST_KNOWN, ChannelRemarks
+from rga.records.channels import ColumnSource, doubts_of, sources_of, unit_fault, values_of
 from rga.records.formats import read_format
-from rga.records.logger_data import measured
 from rga.records.mapping import FileMapping
 from rga.records.table import Table
-from rga.records.units import conversion
+from rga.records.times import read_clock
+from rga.records.units import name_and_unit
 
 #: names and units of the columns of a packet
 Columns = tuple[tuple[str, str], ...]
-#: sets of columns that are remembered, and channels of which is told why they are not used
-_MOST_KNOWN = 1000
-_UNKNOWN = "the model has no such channel"
+
+
+@dataclass(frozen=True)
+class ColumnUse:
+    """What of a table is used.
+
+    Attributes:
+        sources: sensor or context variable -> its column.
+        refused: columns that are not used though nobody leaves them out, with the reason.
+    """
+
+    sources: Mapping[str, ColumnSource]
+    refused: Mapping[str, str]
 
 
 class TableReader:
@@ -34,16 +46,15 @@ class TableReader:
         where: it comes from.
         model: names the sensors and contexts and states their units.
         mapping: what the names, units and signs of the logger mean.
-        refused: takes, by channel, why what is sent of it is not used.
+        remarks: takes what is to be known of its channels.
     """
 
     def __init__(
-        self, where: Path, model: Model, mapping: FileMapping, refused: dict[str, str]
+        self, where: Path, model: Model, mapping: FileMapping, remarks: ChannelRemarks
     ) -> None:
         self._where, self._model, self._mapping = where, model, mapping
-        self._refused, self._left_out = refused, frozenset(mapping.left_out)
-        self._known: dict[Columns, dict[str, ColumnSource]] = {}
-        self._told: set[Columns] = set()
+        self._remarks, self._left_out = remarks, frozenset(mapping.left_out)
+        self._known: dict[Columns, ColumnUse] = {}
         named = {one.column for one in mapping.channels.values() if one.column}
         self._columns = {*model.sensors, *model.context, *mapping.unused, *named}
 
@@ -61,86 +72,79 @@ class TableReader:
         table = read_format(payload, self._where, mapping, self._columns)
         check_names(table.frame.columns, str(self._where))
         chosen = _for(table, mapping)
-        found = measured(table, chosen, self._model)
-        self._tell_unknown(table, chosen, found.clock.columns)
-        if not isinstance(found.clock.start, str):
+        clock = read_clock(table, chosen.time)
+        if not isinstance(clock.start, str):
             raise InputError(
                 "its times are no time stamps",
                 str(self._where),
                 "send time stamps with a zone, or state [time] format in import.toml",
             )
-        start = datetime.fromisoformat(found.clock.start)
+        start = datetime.fromisoformat(clock.start)
         if start.tzinfo is None:
             raise InputError(
                 "its times have no zone", str(self._where), "state [time] zone in import.toml"
             )
-        after = np.rint(found.clock.seconds * MICROSECONDS).astype(np.int64)
+        used = self._used(table, chosen, clock.columns)
+        after = np.rint(clock.seconds * MICROSECONDS).astype(np.int64)
         times = (start - EPOCH) // timedelta(microseconds=1) + after
-        columns = [np.zeros((len(times), 0)), *(one[:, None] for one in found.values.values())]
-        return SensorSamples(tuple(found.values), times, np.hstack(columns))
+        values = self._values(table, chosen, used, len(times))
+        return SensorSamples(tuple(used.sources), times, values, used.refused)
 
     def of_columns(self, columns: Columns, times: Moments, values: FloatArray) -> SensorSamples:
         """SensorSamples of packets of the same columns, float[n, columns]."""
-        table, sources = self._table(columns, values), self.sources(columns)
-        mapping = _for(table, self._mapping)
-        found = np.full((len(times), len(sources)), np.nan)
-        for k, (name, source) in enumerate(sources.items()):
-            found[:, k] = values_of(table, mapping, name, source, self._model)
-        return SensorSamples(tuple(sources), times, found)
+        table, used = self._table(columns, values), self.used(columns)
+        found = self._values(table, _for(table, self._mapping), used, len(times))
+        return SensorSamples(tuple(used.sources), times, found, used.refused)
 
-    def sources(self, columns: Columns) -> dict[str, ColumnSource]:
-        """Sensor or context variable -> its column, of those that can be used."""
+    def used(self, columns: Columns) -> ColumnUse:
+        """What is used of packets with these columns.
+
+        Raises:
+            InputError: two of them mean the same.
+        """
         if columns not in self._known:
             table = self._table(columns, np.zeros((0, len(columns))))
-            sources = sources_of(table, _for(table, self._mapping), self._model, ())
-            used = {one.column for one in sources.values()}
-            for column, _ in columns:
-                if column not in used and column not in self._left_out:
-                    self.refuse(column, _UNKNOWN)
-            if len(self._known) >= _MOST_KNOWN:
+            found = self._used(table, _for(table, self._mapping), ())
+            if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            self._known[columns] = {
-                name: one for name, one in sources.items() if self._converts(name, one)
-            }
+            self._known[columns] = found
         return self._known[columns]
 
-    def _converts(self, name: str, source: ColumnSource) -> bool:
-        """Whether the unit of a column can be that of its channel."""
-        if source.unit is not None:
-            try:
-                conversion(source.unit, name, self._model, source.column)
-            except InputError as error:
-                self.refuse(source.column, error.what)
-                return False
-        return True
-
-    def _tell_unknown(
-        self, table: Table, mapping: FileMapping, time_columns: Iterable[str]
-    ) -> None:
-        """Tell of columns of a file that the model has no channel for, once for each set."""
-        columns = tuple((name, "") for name in table.frame.columns)
-        if columns in self._told:
-            return
-        if len(self._told) >= _MOST_KNOWN:
-            self._told.clear()
-        self._told.add(columns)
-        sources = sources_of(table, mapping, self._model, tuple(time_columns))
-        known = {one.column for one in sources.values()} | {*time_columns, *table.bookkeeping}
-        for column, _ in columns:
+    def _used(self, table: Table, mapping: FileMapping, time_columns: Iterable[str]) -> ColumnUse:
+        """What is used of a table; of the rest it is told why it is not."""
+        times = tuple(time_columns)
+        sources = sources_of(table, mapping, self._model, times)
+        claimed = {*times, *table.bookkeeping, *(one.column for one in sources.values())}
+        refused = {}
+        for column in table.frame.columns:
             names = {column, table.names.get(column, column), mapping.channel_of(column)[0]}
-            if column not in known and not names & self._left_out:
-                self.refuse(column, _UNKNOWN)
+            if column not in claimed and not names & self._left_out:
+                refused[column] = "the model has no such channel"
+        for name, source in [*sources.items()]:
+            if fault := unit_fault(table, name, source, self._model):
+                refused[source.column] = fault.what
+                del sources[name]
+        for column, why in refused.items():
+            self._remarks.refuse(column, why)
+        for column, why in doubts_of(sources).items():
+            self._remarks.doubt(column, why)
+        return ColumnUse(sources, refused)
 
-    def refuse(self, column: str, why: str) -> None:
-        """Tell that what is sent of a column is not used, unless that is told of very many."""
-        if len(self._refused) < _MOST_KNOWN:
-            self._refused[column] = why
+    def _values(self, table: Table, mapping: FileMapping, used: ColumnUse, rows: int) -> FloatArray:
+        """What is used of a table in the units of the model, float[rows, channels]."""
+        found = np.full((rows, len(used.sources)), np.nan)
+        for k, (name, source) in enumerate(used.sources.items()):
+            found[:, k] = values_of(table, mapping, name, source, self._model)
+        return found
 
     def _table(self, columns: Columns, values: FloatArray) -> Table:
-        names = [name for name, _ in columns]
-        frame = pl.DataFrame(dict(zip(names, values.T, strict=True)))
-        units = {name: unit for name, unit in columns if unit}
-        return Table(self._where, frame, "row", 1, format="packet", units=units)
+        """Packets as a table; as in a file, a unit may stand in brackets behind a name."""
+        frame = pl.DataFrame(dict(zip((name for name, _ in columns), values.T, strict=True)))
+        parts = {name: name_and_unit(name) for name, _ in columns}
+        names = {name: bare for name, (bare, _) in parts.items() if bare != name}
+        stated = {name: unit or parts[name][1] for name, unit in columns}
+        units = {name: unit for name, unit in stated.items() if unit}
+        return Table(self._where, frame, "row", 1, format="packet", units=units, names=names)
 
 
 def _for(table: Table, mapping: FileMapping) -> FileMapping:

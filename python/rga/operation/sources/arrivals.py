@@ -6,7 +6,7 @@ from hashlib import sha256
 from rga.errors import InputError, in_short
 from rga.operation.inbox.arrival import Arrival
 from rga.operation.packets.formats import PACKETS, PayloadFormat
-from rga.operation.rows.samples import Reader
+from rga.operation.rows.samples import Reader, check_samples
 from rga.operation.sources.clock import ClockSight, ClockWatch
 
 #: cells of a line of a text: reading it takes the square of them
@@ -35,17 +35,19 @@ def arrival_of(
         kind: its format, where the sender says it.
     """
     digest = sha256(where.encode() + b"\0" + payload).hexdigest()
-    kind = kind or reader.format_of(payload)
+    kind = reader.format_of(payload, kind)
     number = None
     try:
         if kind in PACKETS:
             packets = reader.packets_of(kind, payload, where, arrived)
+            reader.check_used(packets, where)
             number, timed = packets[0].number, all(one.timed for one in packets)
             moments = [one.times for one in packets]
             channels = frozenset(name for one in packets for name in one.channels)
         else:
             _check_width(payload, where)
             samples, timed = reader.of_rows(kind, payload, where, arrived)
+            check_samples(samples, where)
             moments, channels = [samples.times], frozenset(samples.names)
     except Exception as error:  # whatever a reader meets, the payload is kept aside
         told = in_short(error)

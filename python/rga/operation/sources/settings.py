@@ -70,8 +70,10 @@ class PayloadSettings(SourceSettings):
 
     @model_validator(mode="after")
     def _columns_of_rows(self) -> "PayloadSettings":
-        if (self.format == "row") != bool(self.columns):
-            raise ValueError('format = "row" needs columns, and nothing else has them')
+        if self.format == "row" and not self.columns:
+            raise ValueError('format = "row" needs columns = ["time", "D1"], as they are sent')
+        if self.columns and self.format != "row":
+            raise ValueError('columns are of rows: state format = "row" too, or leave them out')
         if len(set(self.columns)) < len(self.columns):
             raise ValueError("columns: name every column once")
         return self
@@ -124,8 +126,10 @@ class MqttSource(PayloadSettings):
     @model_validator(mode="after")
     def _broker(self) -> "MqttSource":
         _check_address(self.url, ("mqtt", "mqtts"), "broker", "mqtt://host:1883")
-        if (self.format == "number") != (self.channel_topic is not None):
-            raise ValueError('format = "number" needs channel_topic, and nothing else has one')
+        if self.format == "number" and self.channel_topic is None:
+            raise ValueError('format = "number" needs channel_topic = "site/{channel}"')
+        if self.channel_topic is not None and self.format != "number":
+            raise ValueError('channel_topic is of numbers: state format = "number" too')
         return self
 
 

@@ -29,6 +29,7 @@ class WhatCame:
         size: of the payloads that can be used [bytes].
         first, last: moments of their readings, microseconds since 1970 (UTC); None: none came.
         refused: why payloads cannot be used, each reason once.
+        stated: sensors and contexts of rows whose columns the configuration states.
     """
 
     samples: list[SensorSamples] = field(default_factory=list)
@@ -36,11 +37,12 @@ class WhatCame:
     first: int | None = None
     last: int | None = None
     refused: dict[str, str] = field(default_factory=dict)
+    stated: set[str] = field(default_factory=set)
 
     @property
     def names(self) -> set[str]:
-        """Sensors and contexts that were read."""
-        return {name for one in self.samples for name in one.names}
+        """Sensors and contexts that were read, or are stated to come."""
+        return self.stated.union(*(one.names for one in self.samples))
 
     def take(self, arrival: Arrival, reader: Reader) -> None:
         """Take one payload in."""
@@ -65,7 +67,7 @@ def what_came(inlet: TrialInlet, reader: Reader, now: int) -> WhatCame:
         reader: of the source.
         now: microseconds since 1970 (UTC).
     """
-    found = WhatCame()
+    found = WhatCame(stated=reader.stated_names())
     for place, payload in inlet.payloads:
         found.take(_arrival(now, place, reader, payload), reader)
     for where, head, lines in inlet.lines:
@@ -94,6 +96,7 @@ def source_findings(
         reader: of the source, which has read it.
         wait: how long it was listened to [s].
     """
+    yield from _channel_findings(where, reader)
     if source.kind == "http":
         what = "loggers send to the service: nothing can be heard before it runs"
         yield Finding("note", where, what, "look at the page Data when it runs")
@@ -108,10 +111,17 @@ def source_findings(
     for why, place in list(came.refused.items())[:MOST_TOLD]:
         what = f"what came from {place} cannot be used: {why}"
         yield Finding("error", where, what, "correct format or mapping of the source")
-    for channel, why in reader.refused.items():
+
+
+def _channel_findings(where: str, reader: Reader) -> Iterator[Finding]:
+    """Channels that are not used, or not as they say."""
+    for channel, why in reader.remarks.refused.items():
         what = f"the channel {channel!r} is not used: {why}"
         remedy = "name it under [channels] or [unused] in import.toml"
         yield Finding("error", where, what, remedy)
+    for channel, why in reader.remarks.doubted.items():
+        remedy = "correct the one that is wrong, or leave the unit out of import.toml"
+        yield Finding("warning", where, f"the channel {channel!r}: {why}", remedy)
 
 
 def clock_findings(where: str, source: AnySource, came: WhatCame, now: int) -> Iterator[Finding]:
@@ -135,10 +145,11 @@ def silent_findings(
     came: Sequence[WhatCame],
     readers: Sequence[Reader],
 ) -> Iterator[Finding]:
-    """Sensors of a model of which nothing came."""
-    if not any(one.samples for one in came) or any(one.kind == "http" for one in sources):
-        return
+    """Sensors of a model of which nothing came, nor is stated to come."""
+    pairs = zip(sources, came, strict=True)
     sent: set[str] = set().union(*(one.names for one in came))
+    if not sent or any(source.kind == "http" and not one.stated for source, one in pairs):
+        return
     left_out = frozenset.intersection(*(one.left_out for one in readers))
     if silent := [one for one in model.sensors if one not in sent | left_out]:
         # Loggers of a broker may send later; files, tables and servers show all that they have.
