@@ -2,14 +2,14 @@
 
 import json
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, select
 
 from rga.operation.inbox import tables
 from rga.operation.inbox.arrival import Arrival, Outcome
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.packet import MICROSECONDS, Number
 from rga.twin.repository.checksum import with_checksum
-from rga.twin.repository.table_file import values_of
+from rga.twin.repository.table_file import put, values_of
 
 #: how long a packet without a number is known again [µs]
 REMEMBERED = 24 * 3600 * MICROSECONDS
@@ -51,13 +51,13 @@ class KnownPackets:
 
     def write(self) -> None:
         """Keep the numbers that have come."""
-        for name, numbers in self._streams.items():
-            c = tables.stream.c
-            where = (c.source == self._source) & (c.stream == name)
-            self._connection.execute(delete(tables.stream).where(where))
-            gaps = json.dumps(numbers.gaps)
-            entry = with_checksum(source=self._source, stream=name, next=numbers.next, gaps=gaps)
-            self._connection.execute(insert(tables.stream).values(**entry))
+        entries = [
+            with_checksum(
+                source=self._source, stream=name, next=one.next, gaps=json.dumps(one.gaps)
+            )
+            for name, one in self._streams.items()
+        ]
+        put(self._connection, tables.stream, entries, replacing=True)
 
     def _numbers(self, stream: str) -> Numbers:
         if stream not in self._streams:

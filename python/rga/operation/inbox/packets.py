@@ -1,7 +1,7 @@
 """Packets on the disk: each is kept once, and nothing that was acknowledged is lost."""
 
 import json
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -25,7 +25,7 @@ from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import Station
 from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.faults import whole
-from rga.twin.repository.table_file import only_entry, values_of
+from rga.twin.repository.table_file import only_entry, put, values_of
 
 HOUR = 3600 * MICROSECONDS
 #: before any moment
@@ -98,14 +98,14 @@ class Packets:
             aside: list[dict[str, Any]] = []
             number, refused = _last(connection, tables.packet), _last(connection, tables.refused)
             outcomes: list[Outcome] = []
-            counts: dict[int, Counter[str]] = {}
+            counts: defaultdict[int, Counter[str]] = defaultdict(Counter)
             for one in arrivals:
                 final = self._grid.final_until(latest)
                 until = sealed if final is None else max(sealed, final)
                 fate, reason = known.fate_of(one, until)
                 outcomes.append((fate, reason))
                 late_before = until if fate == "waiting" and one.first < until else None
-                count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
+                count = counts[one.arrived - one.arrived % HOUR]
                 count["received"] += 1
                 count["partly_late"] += late_before is not None
                 if fate == "waiting":
@@ -116,10 +116,8 @@ class Packets:
                     aside.append(_refused(refused := refused + 1, source, one, reason))
                 elif fate != "duplicate":
                     entries.append(_entry(number := number + 1, source, one, fate, late_before))
-            if entries:
-                connection.execute(insert(tables.packet), entries)
-            if aside:
-                connection.execute(insert(tables.refused), aside)
+            put(connection, tables.packet, entries)
+            put(connection, tables.refused, aside)
             known.write()
             _move_on(connection, source, entries)
             for part, state in (cursor or {}).items():
@@ -206,7 +204,7 @@ class Packets:
                 rows = _rows(station, cells)
                 if self._inbox.put_within(connection, station, *rows) is None:
                     raise InputError("the twin has ended", "the inbox", "begin another")
-                connection.execute(insert(tables.cell), [_beside(cell) for cell in cells])
+                put(connection, tables.cell, [_beside(cell) for cell in cells])
             connection.execute(delete(tables.sealed))
             connection.execute(insert(tables.sealed).values(**with_checksum(until=until)))
             c = tables.packet.c
@@ -307,10 +305,8 @@ def _source(connection: Connection, name: str) -> dict[str, Any]:
 
 
 def _keep_cursor(connection: Connection, source: str, part: str, state: str) -> None:
-    c = tables.cursor.c
-    connection.execute(delete(tables.cursor).where((c.source == source) & (c.part == part)))
     entry = with_checksum(source=source, part=part, state=state)
-    connection.execute(insert(tables.cursor).values(**entry))
+    put(connection, tables.cursor, [entry], replacing=True)
 
 
 def _move_on(connection: Connection, name: str, entries: Sequence[dict[str, Any]]) -> None:
@@ -321,8 +317,7 @@ def _move_on(connection: Connection, name: str, entries: Sequence[dict[str, Any]
         moments.append(known["latest"])
     now = known | {"latest": max(moments, default=None)}
     if now != known:
-        connection.execute(delete(tables.source).where(tables.source.c.name == name))
-        connection.execute(insert(tables.source).values(**with_checksum(**now)))
+        put(connection, tables.source, [with_checksum(**now)], replacing=True)
 
 
 def _count(connection: Connection, source: str, hour: int, more: Counter[str]) -> None:

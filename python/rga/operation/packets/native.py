@@ -175,7 +175,7 @@ def _check_keys(payload: bytes, where: str) -> None:
     if payload[:1] in _MAPS:
         return
     # A name may be written by escapes; else a key that stands twice is found twice.
-    if b"\\u" not in payload and all(payload.count(name) < 2 for name in _QUOTED):
+    if b"\\u" not in payload and max(map(payload.count, _QUOTED)) < 2:
         return
     keys = [key for key, _ in json.loads(payload, object_pairs_hook=list)]
     if double := next((key for key in keys if keys.count(key) > 1), None):

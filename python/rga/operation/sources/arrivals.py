@@ -34,7 +34,6 @@ def arrival_of(
         clock: what is believed of its clock; None: all.
         kind: its format, where the sender says it.
     """
-    digest = sha256(where.encode() + b"\0" + payload).hexdigest()
     kind = reader.format_of(payload, kind)
     number = None
     try:
@@ -42,24 +41,28 @@ def arrival_of(
             packets = reader.packets_of(kind, payload, where, arrived)
             reader.check_used(packets, where)
             number, timed = packets[0].number, all(one.timed for one in packets)
-            moments = [one.times for one in packets]
+            # The times of a packet rise.
+            first = min(int(one.times[0]) for one in packets)
+            last = max(int(one.times[-1]) for one in packets)
             channels = frozenset(name for one in packets for name in one.channels)
         else:
             _check_width(payload, where)
             samples, timed = reader.of_rows(kind, payload, where, arrived)
             check_samples(samples, where)
-            moments, channels = [samples.times], frozenset(samples.names)
+            channels = frozenset(samples.names)
+            first, last = int(samples.times.min()), int(samples.times.max())
     except Exception as error:  # whatever a reader meets, the payload is kept aside
         told = in_short(error)
-        return Arrival(payload, kind, arrived, sha256=digest, refused=told, place=where)
-    first, last = min(int(one.min()) for one in moments), max(int(one.max()) for one in moments)
+        return Arrival(payload, kind, arrived, refused=told, place=where)
     fault = None
     if clock is not None:
         fault = clock.refused(ClockSight(where, channels, number, first, last, arrived))
         fault = fault and f"{fault}: {_MEND}"
     # The same number may be sent again and again, and is another reading each time.
-    known = digest if timed and number is None else None
-    return Arrival(payload, kind, arrived, first, last, number, known, fault, where)
+    digest = None
+    if timed and number is None:
+        digest = sha256(where.encode() + b"\0" + payload).hexdigest()
+    return Arrival(payload, kind, arrived, first, last, number, digest, fault, where)
 
 
 #: lines beyond which not every one is looked at where the first, the last and one between them

@@ -1,13 +1,15 @@
 """Proof that what is read is what was written: a checksum of every entry."""
 
-import struct
 from collections.abc import Mapping
+from functools import lru_cache
 from numbers import Real
+from struct import Struct
 from typing import Any
 from zlib import crc32
 
 #: name of its column
 COLUMN = "checksum"
+_DOUBLE = Struct("<d")
 
 
 def checksum(values: Mapping[str, Any]) -> int:
@@ -28,8 +30,7 @@ def checksum(values: Mapping[str, Any]) -> int:
     for name in sorted(values):
         if name != COLUMN:
             content = _content(values[name])
-            # The length keeps what ends one column from passing to the next.
-            parts += f"{name} {len(content)} ".encode(), content
+            parts += _heading(name, len(content)), content
     return crc32(b"".join(parts))
 
 
@@ -52,13 +53,21 @@ def is_whole(values: Mapping[str, Any]) -> bool:
         return False
 
 
+@lru_cache(maxsize=4096)
+def _heading(name: str, length: int) -> bytes:
+    # The length keeps what ends one column from passing to the next.
+    return f"{name} {length} ".encode()
+
+
 def _content(value: Any) -> bytes:
+    # The plain ones first: asking whether one is a Real takes long.
+    if isinstance(value, bytes):
+        return b"bytes" + bytes(value)
+    if isinstance(value, str):
+        return b"text" + value.encode("utf-8", "surrogatepass")
     # SQLite keeps no NaN, and no sign of a zero.
     if value is None or value != value:
         return b"nothing"
-    if isinstance(value, str):
-        return b"text" + value.encode("utf-8", "surrogatepass")
-    # The plain ones first: asking whether one is a Real takes long.
     if type(value) in (int, float) or isinstance(value, Real):
-        return b"number" + struct.pack("<d", float(value) + 0.0)
+        return b"number" + _DOUBLE.pack(float(value) + 0.0)
     return b"bytes" + bytes(memoryview(value))

@@ -96,12 +96,12 @@ def _damaged(words: str, where: str) -> Damaged:
 
 
 def whole(table: Table, entry: Row[Any]) -> Row[Any]:
-    """An entry as it was written.
+    """An entry with all columns of its table, as it was written.
 
     Raises:
         NotWhole: it is not.
     """
-    if is_whole(entry._asdict()):
+    if is_whole(dict(zip(table.columns.keys(), entry, strict=True))):
         return entry
     raise NotWhole(f"{named(table, entry)} is not what was written")
 

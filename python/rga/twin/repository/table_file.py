@@ -1,11 +1,13 @@
 """A file of tables that threads and processes read and write side by side."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from sqlalchemy import Connection, MetaData, Row, Table, inspect, select
+from sqlalchemy import Connection, MetaData, Row, Table, insert, inspect, select
+from sqlalchemy.dialects.sqlite import dialect
 
 from rga.twin.repository.checksum import COLUMN
 from rga.twin.repository.faults import as_input_errors, whole
@@ -66,6 +68,33 @@ class TableFile:
             # Whoever reads before writing is refused when another has written meanwhile.
             connection.exec_driver_sql("PRAGMA user_version = 1")
             yield connection
+
+
+def put(
+    connection: Connection,
+    table: Table,
+    entries: Sequence[Mapping[str, Any]],
+    *,
+    replacing: bool = False,
+) -> None:
+    """Put entries in a table, each with all of its columns, as the driver takes them.
+
+    Args:
+        connection: of a transaction that writes.
+        table: that they are of.
+        entries: of texts, bytes and plain numbers.
+        replacing: those of the same keys.
+    """
+    names = table.columns.keys()
+    rows = [tuple([entry[name] for name in names]) for entry in entries]
+    if rows:
+        connection.exec_driver_sql(_putting(table, replacing), rows)
+
+
+@cache
+def _putting(table: Table, replacing: bool) -> str:
+    statement = insert(table).prefix_with("OR REPLACE") if replacing else insert(table)
+    return str(statement.compile(dialect=dialect()))
 
 
 def values_of(table: Table, entry: Row[Any]) -> dict[str, Any]:
