@@ -104,8 +104,9 @@ class ServedTwin:
         Raises:
             InputError: a secret or a package that one needs is missing.
         """
+        names = {*self.model.sensors, *self.model.context}
         found = {
-            name: opened(one, self._mappings[name], self.name, _TwinInlet(self, name))
+            name: opened(one, self._mappings[name], self.name, names, _TwinInlet(self, name))
             for name, one in self._sources.items()
         }
         return {name: source for name, source in found.items() if source is not None}

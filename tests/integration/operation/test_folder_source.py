@@ -125,7 +125,7 @@ def test_every_row_of_a_logger_is_used_once(made: Callable[..., Service], tmp_pa
     poll()
     # The share is away, and is back with other numbers of its files.
     folder.rename(tmp_path / "away")
-    assert poll() == "the folder is away"
+    assert poll() == f"{folder} is away"
     folder.mkdir()
     assert "a share may be away" in str(poll())
     shutil.copytree(tmp_path / "away", folder, dirs_exist_ok=True)

@@ -15,7 +15,7 @@ WAIT = 1.0
 
 def heard(source: FolderSource | OpcUaSource | SqlSource, wait: float = WAIT) -> Heard:
     """What comes of one source."""
-    return listened_to([("east", source, RecordMapping())], wait)[0]
+    return listened_to([("east", (), source, RecordMapping())], wait)[0]
 
 
 def test_a_table_is_read(tmp_path: Path) -> None:

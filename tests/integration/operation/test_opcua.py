@@ -226,7 +226,7 @@ def test_a_source_that_never_connects_ends(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_check_hears_a_server(plant: Plant) -> None:
     plant.write(1)
     settings = OpcUaSource(kind="opcua", url=plant.url, nodes={"D1": NODE})
-    heard = listened_to([("east", settings, RecordMapping())], 3.0)[0]
+    heard = listened_to([("east", (), settings, RecordMapping())], 3.0)[0]
     assert heard.fault is None
     values = [value for _, one in heard.inlet.payloads for value in read_packet(one, "").values]
     assert plant.count in values

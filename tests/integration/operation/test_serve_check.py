@@ -205,7 +205,7 @@ def test_a_calibration_of_less_than_three_days_is_told(model: Model, tmp_path: P
 def test_a_folder_that_is_away_is_told(model: Model, tmp_path: Path) -> None:
     code, said = checked(tmp_path)
     assert code == 2
-    assert "error: the folder is away (twin 'east', folder)" in said
+    assert f"error: {tmp_path / 'logger'} is away (twin 'east', folder)" in said
 
 
 @pytest.mark.parametrize(

@@ -193,3 +193,13 @@ def test_garbage_is_no_packet() -> None:
     for packet in range(200):
         with pytest.raises(InputError):
             read_packet(garbage(packet, 0), "a test")
+
+
+def test_a_unit_goes_out_with_the_name_of_its_channel(tmp_path: Path) -> None:
+    path, start = tmp_path / "r.csv", datetime.fromisoformat("2026-11-23T00:00:00Z")
+    path.write_text("time,D1,D2 (mm),D3\n,cm,mm,-\n0,1,2,3\n1,1,2,3\n", "utf-8")
+    record = sent_record(path, RecordMapping(), start)
+    assert record.channels == ("D1 [cm]", "D2 (mm)", "D3")
+    path.write_text("time,D1 (mm)\n,cm\n0,1\n1,1\n", "utf-8")
+    with pytest.raises(InputError, match="says 'mm', the line of units says 'cm'"):
+        sent_record(path, RecordMapping(), start)

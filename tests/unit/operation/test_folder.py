@@ -12,10 +12,13 @@ from typing import Any
 import pytest
 
 from rga.operation.packets.packet import MOST_BYTES
+from rga.operation.sources.file_head import HeadFinder
 from rga.operation.sources.folder import Folder, Piece
 from rga.operation.sources.source import Outcome
+from rga.records.mapping import RecordMapping
 
 HEAD = b"time,D1\n"
+ONE_LINE = HeadFinder(RecordMapping(header_line=1, data_line=2))
 
 
 class Rows:
@@ -30,8 +33,8 @@ class Rows:
 
     def start(self) -> None:
         """As when the service is started again: all that is known went through text."""
-        count = self._head.count(b"\n")
-        self.folder = Folder(self._folder, self._files, count, json.loads(json.dumps(self.kept)))
+        finder = ONE_LINE if self._head else HeadFinder(RecordMapping(), headless=True)
+        self.folder = Folder(self._folder, self._files, finder, json.loads(json.dumps(self.kept)))
 
     def receive(self, payloads: Any, cursor: Any = None) -> list[Outcome]:
         self.whole += [content for _, content in payloads]
@@ -130,7 +133,7 @@ def test_a_folder_that_is_away_is_not_empty(tmp_path: Path) -> None:
     rows.look()
     share.rename(away)
     assert rows.look() == []
-    assert rows.fault == "the folder is away"
+    assert rows.fault == f"{share} is away"
     share.mkdir()
     assert rows.look() == []
     assert rows.fault == "the folder is empty, and was not: a share may be away"
@@ -206,10 +209,10 @@ def test_a_line_that_never_ends_is_told(
 def test_a_long_file_comes_in_pieces(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr("rga.operation.sources.folder._LONGEST", 20)
     append(tmp_path / "a.csv", HEAD + b"".join(b"%d,1\n" % k for k in range(50)))
-    pieces = list(Folder(tmp_path, "*", 1).pieces())
+    pieces = list(Folder(tmp_path, "*", ONE_LINE).pieces())
     assert len(pieces) > 5
     # After any of them the rest is left.
-    rest = Folder(tmp_path, "*", 1, pieces[2].cursor).pieces()
+    rest = Folder(tmp_path, "*", ONE_LINE, pieces[2].cursor).pieces()
 
     def count(parts: Any) -> int:
         return sum(len(one.content.splitlines()) for one in parts)
@@ -219,7 +222,7 @@ def test_a_long_file_comes_in_pieces(tmp_path: Path, monkeypatch: Any) -> None:
 
 def test_what_was_not_kept_comes_again(tmp_path: Path) -> None:
     append(tmp_path / "a.csv", HEAD + b"0,1\n")
-    folder = Folder(tmp_path, "*", 1)
+    folder = Folder(tmp_path, "*", ONE_LINE)
     first: Piece = next(folder.pieces())
     assert next(folder.pieces()) == first
     assert list(folder.pieces()) == [first]
@@ -298,6 +301,6 @@ def test_json_and_what_is_no_text_is_taken_as_a_whole(tmp_path: Path, rows: Rows
 
 def test_line_protocol_has_no_head(tmp_path: Path) -> None:
     rows = Rows(tmp_path, head=b"")
-    rows.folder = Folder(tmp_path, "*", 1)
+    rows.folder = Folder(tmp_path, "*", ONE_LINE)
     append(tmp_path / "a", b"air v=1 1795392000\n")
     assert rows.look() == [b"air v=1 1795392000"]

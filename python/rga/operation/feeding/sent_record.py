@@ -20,7 +20,9 @@ from rga.operation.packets.packet import (
 )
 from rga.records.mapping import FileMapping
 from rga.records.read import read_table
+from rga.records.table import Table
 from rga.records.times import read_clock
+from rga.records.units import contradict, name_and_unit, states_none, without_brackets
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,28 @@ def sent_record(
     missing = _missing(mapping, channels)
     values = np.column_stack([table.numbers(one, missing[one]) for one in channels])
     times = (start - EPOCH) // timedelta(microseconds=1) + after
-    return SentRecord(tuple(channels), times, values, stream or secrets.token_hex(8))
+    names = tuple(_with_unit(table, one) for one in channels)
+    return SentRecord(names, times, values, stream or secrets.token_hex(8))
+
+
+def _with_unit(table: Table, column: str) -> str:
+    """The name of a column, with its unit in brackets where only a line of units has it.
+
+    Raises:
+        InputError: the name has another unit than the line of units.
+    """
+    named, stated = name_and_unit(column)[1], table.units.get(column)
+    if stated is None or states_none(stated):
+        return column
+    if named is None:
+        return f"{column} [{without_brackets(stated)}]"
+    if contradict(named, stated):
+        raise InputError(
+            f"the name of {column!r} says {named!r}, the line of units says {stated!r}",
+            str(table.path),
+            "correct the one that is wrong",
+        )
+    return column
 
 
 def _missing(mapping: FileMapping, columns: Iterable[str]) -> dict[str, tuple[str, ...]]:

@@ -2,16 +2,22 @@
 
 import stat
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from threading import Event
 from typing import Any, BinaryIO
 
-from rga.operation.packets.line_protocol import is_line_protocol
 from rga.operation.packets.native import is_native
 from rga.operation.packets.packet import MOST_BYTES
+from rga.operation.sources.file_head import (
+    LOOKED_AT,
+    HeadFinder,
+    HeadLines,
+    beginnings,
+    begins_anew,
+)
 from rga.operation.sources.source import Inlet
 
 #: bytes at the head of a file, and before where it is read on, by which it is known again
@@ -20,6 +26,8 @@ HEAD = 1024
 _LONGEST = MOST_BYTES // 2
 #: how long a last line without an end is waited for [s]
 ENDLESS = 60.0
+#: lines after which a file without a row is told of
+MANY_LINES = 20
 #: first bytes of files that are written as a whole
 _WHOLE = (b"PAR1", b"TDSm", b"MATLAB", b"\x89HDF", b"{", b"[")
 
@@ -59,17 +67,20 @@ class Folder:
     when its end is there, a file that is no text or JSON when it has stopped growing. Files whose
     names begin with a dot are left alone.
 
+    Where the lines above the rows come again in a file, as a logger writes them that starts again,
+    the rows below are read by them.
+
     Args:
         path: of the folder.
         files: names of the files, * for any text.
-        head_lines: above the first row of a text file.
+        heads: finds the lines above the rows of a text file.
         known: how far the files were read, as the cursors of pieces say it.
     """
 
     def __init__(
-        self, path: Path, files: str, head_lines: int, known: Mapping[str, Any] | None = None
+        self, path: Path, files: str, heads: HeadFinder, known: Mapping[str, Any] | None = None
     ) -> None:
-        self._path, self._files, self._head_lines = path, files, head_lines
+        self._path, self._files, self._heads = path, files, heads
         self._known = dict(known or {})
         self._by_name = {state["name"]: state for state in self._known.values()}
         self._read: dict[str, tuple[int, int]] = {}
@@ -79,7 +90,7 @@ class Folder:
     def look(self, inlet: Inlet, ending: Event) -> str | None:
         """Give what is new to an inlet; what is wrong with the folder, in words."""
         if not self._path.is_dir():
-            return "the folder is away"
+            return f"{self._path} is {'no folder' if self._path.exists() else 'away'}"
         for piece in self.pieces():
             if piece.head is None:
                 inlet.receive([(piece.where, piece.content)], piece.cursor)
@@ -160,15 +171,25 @@ class Folder:
         self._read[file.key] = file.size, file.changed
 
     def _lines(self, file: _File, opened: BinaryIO, youngest: bool) -> Iterator[Piece]:
-        opened.seek(0)
-        first = opened.readline(_LONGEST)
-        count = 0 if is_line_protocol(first) else self._head_lines
-        opened.seek(0)
-        head = b"".join(opened.readline(_LONGEST) for _ in range(count))
-        mark = sha256(head[:HEAD]).hexdigest()
-        offset = self._read_on(file, opened, mark, len(head))
-        if count and not head.endswith(b"\n"):
+        first = _whole_lines(opened, 0)
+        found = self._heads.find(first)
+        if found is None and self._rests(file, ENDLESS):
+            first = _whole_lines(opened, 0, ended=False)
+            found = self._heads.find(first)
+        if found is None:
+            # It has no row yet, as a logger leaves it that has just begun.
+            if len(first) > MANY_LINES:
+                self._faults[file.name] = "no row is found in it: state header_line in import.toml"
             return
+        above = first[: found.count]
+        again = beginnings(above, found)
+        opened.seek(0)
+        count = self._heads.stated if found.count else 0
+        stated = b"".join(opened.readline(_LONGEST) for _ in range(count))
+        mark = sha256(stated[:HEAD]).hexdigest()
+        begin = (0, sum(len(line) + 1 for line in above))
+        offset, place = self._read_on(file, opened, mark, begin)
+        head = _head(opened, place, above, found)
         while True:
             opened.seek(offset)
             content = opened.read(_LONGEST)
@@ -186,27 +207,43 @@ class Folder:
                 end = len(content)
             if not end:
                 break
+            other = again.search(content, 0, end) if again is not None else None
+            if other is not None and other.start() == 0:
+                more = _whole_lines(opened, offset)
+                lines_again = self._heads.again(more, above, found)
+                if lines_again is None:
+                    return
+                place = (offset, offset + sum(len(line) + 1 for line in more[:lines_again]))
+                head, offset = _head(opened, place, above, found), place[1]
+                continue
+            if other is not None:
+                end = other.start()
             lines, offset = content[:end], offset + end
-            state = self._at(file, opened, mark, offset)
+            state = self._at(file, opened, mark, offset, place)
             yield Piece(file.name, head, lines, {file.key: state})
             self._keep(file, state)
         # It may have got another number.
-        self._keep(file, self._at(file, opened, mark, offset))
+        self._keep(file, self._at(file, opened, mark, offset, place))
         self._read[file.key] = file.size, file.changed
 
-    def _at(self, file: _File, opened: BinaryIO, mark: str, offset: int) -> dict[str, Any]:
-        """How far a file was read."""
+    def _at(
+        self, file: _File, opened: BinaryIO, mark: str, offset: int, head: tuple[int, int]
+    ) -> dict[str, Any]:
+        """How far a file was read, and where the head of what follows stands."""
         tail = _tail(opened, offset)
-        return {"name": file.name, "mark": mark, "offset": offset, "tail": tail}
+        return {"name": file.name, "mark": mark, "offset": offset, "tail": tail, "head": [*head]}
 
-    def _read_on(self, file: _File, opened: BinaryIO, mark: str, begin: int) -> int:
-        """Where a file is read on: at its first row, if it is not the file that it was."""
-        offset = begin
+    def _read_on(
+        self, file: _File, opened: BinaryIO, mark: str, head: tuple[int, int]
+    ) -> tuple[int, tuple[int, int]]:
+        """Where a file is read on, and its head there: at its first row, if it is another file."""
+        offset = head[1]
         for before in self._states(file):
             known = before["mark"] == mark and offset < before["offset"] <= file.size
             if known and before["tail"] == _tail(opened, before["offset"]):
-                offset = before["offset"]
-        return offset
+                begin, end = before.get("head", head)
+                offset, head = before["offset"], (begin, end)
+        return offset, head
 
     def _states(self, file: _File) -> list[Any]:
         """How far the file was read of this number, and that of this name."""
@@ -224,6 +261,24 @@ class Folder:
             self._resting[file.key] = (file.size, file.changed), now
             return False
         return now - since >= seconds
+
+
+def _whole_lines(opened: BinaryIO, offset: int, ended: bool = True) -> list[bytes]:
+    """Lines from a place on, without their ends; one that has no end only if that is asked for."""
+    opened.seek(offset)
+    *lines, last = opened.read(LOOKED_AT).split(b"\n")
+    return lines if ended or not last else [*lines, last]
+
+
+def _head(
+    opened: BinaryIO, place: tuple[int, int], above: Sequence[bytes], found: HeadLines
+) -> bytes:
+    """The lines above rows; where the names alone come again, with those before them."""
+    opened.seek(place[0])
+    head = opened.read(place[1] - place[0])
+    if not place[0] or begins_anew(head.split(b"\n")[0], above):
+        return head
+    return b"".join(line + b"\n" for line in above[: found.names]) + head
 
 
 def _tail(opened: BinaryIO, offset: int) -> str:

@@ -1,5 +1,8 @@
 """The source that a configuration states."""
 
+from collections.abc import Collection
+
+from rga.operation.sources.file_head import HeadFinder
 from rga.operation.sources.folder import Folder
 from rga.operation.sources.settings import (
     AnySource,
@@ -16,13 +19,16 @@ from rga.records.mapping import FileMapping
 _HEADLESS = ("line_protocol", "row", "number")
 
 
-def opened(settings: AnySource, mapping: FileMapping, twin: str, inlet: Inlet) -> DataSource | None:
+def opened(
+    settings: AnySource, mapping: FileMapping, twin: str, names: Collection[str], inlet: Inlet
+) -> DataSource | None:
     """The source, which is not started yet; None: it sends to this service by itself.
 
     Args:
         settings: of the source.
         mapping: of its logger.
         twin: name of the twin.
+        names: of its sensors and contexts.
         inlet: keeps what it brings.
 
     Raises:
@@ -30,8 +36,8 @@ def opened(settings: AnySource, mapping: FileMapping, twin: str, inlet: Inlet) -
     """
     name = f"{settings.kind} of {twin}"
     if isinstance(settings, FolderSource):
-        lines = 0 if settings.format in _HEADLESS else mapping.head_lines
-        folder = Folder(settings.path, settings.files, lines, inlet.cursor())
+        heads = HeadFinder(mapping, names, settings.format in _HEADLESS)
+        folder = Folder(settings.path, settings.files, heads, inlet.cursor())
         return Polling(name, lambda ending: folder.look(inlet, ending), settings.poll)
     if isinstance(settings, MqttSource):
         from rga.operation.sources.mqtt import Broker

@@ -1,7 +1,7 @@
 """What sources bring within a few seconds, kept in memory."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event
 from typing import Any
@@ -87,39 +87,47 @@ class Heard:
     fault: str | None = None
 
 
-def listened_to(sources: Sequence[tuple[str, AnySource, FileMapping]], wait: float) -> list[Heard]:
+#: name of a twin, those of its sensors and contexts, a source of it, and the mapping of its logger
+Listened = tuple[str, Collection[str], AnySource, FileMapping]
+
+
+def listened_to(sources: Sequence[Listened], wait: float) -> list[Heard]:
     """What sources bring, all at once.
 
     Args:
-        sources: each with the name of its twin and the mapping of its logger.
+        sources: of twins.
         wait: how long they are listened to [s].
     """
     inlets = [TrialInlet() for _ in sources]
     errors: list[InputError | None] = []
     running: list[DataSource | None] = []
-    for (twin, source, mapping), inlet in zip(sources, inlets, strict=True):
+    for source, inlet in zip(sources, inlets, strict=True):
         try:
-            running.append(_listener(twin, source, mapping, inlet))
+            running.append(_listener(*source, inlet))
             errors.append(None)
         except InputError as error:
             running.append(None)
             errors.append(error)
-    begun = [one for one in running if one is not None]
-    for one in begun:
-        one.start()
+    begun = [found for found in running if found is not None]
+    for found in begun:
+        found.start()
     until = time.monotonic() + wait
     listening = [inlet for inlet, one in zip(inlets, running, strict=True) if one is not None]
     while time.monotonic() < until and not all(one.enough.is_set() for one in listening):
         time.sleep(OFTEN / 4)
     # What a source says as it is stopped is no fault.
     faults = [None if one is None else one.fault for one in running]
-    for one in begun:
-        one.stop()
+    for found in begun:
+        found.stop()
     return [Heard(*one) for one in zip(inlets, errors, faults, strict=True)]
 
 
 def _listener(
-    twin: str, source: AnySource, mapping: FileMapping, inlet: TrialInlet
+    twin: str,
+    names: Collection[str],
+    source: AnySource,
+    mapping: FileMapping,
+    inlet: TrialInlet,
 ) -> DataSource | None:
     """What listens to a source and leaves nothing there; None: it sends to the service."""
     if isinstance(source, MqttSource):
@@ -128,4 +136,4 @@ def _listener(
         return BrokerVisit(source, inlet)
     if isinstance(source, (FolderSource, SqlSource)):
         source = source.model_copy(update={"poll": OFTEN})
-    return opened(source, mapping, twin, inlet)
+    return opened(source, mapping, twin, names, inlet)

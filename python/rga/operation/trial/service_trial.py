@@ -65,7 +65,12 @@ def service_findings(configuration: Configuration, wait: float) -> list[Finding]
 def _heard(files: Sequence[TwinFiles], room: DiskRoom, wait: float) -> list[Finding]:
     """What is wrong with sources and with what they bring, and what a year of it takes."""
     sources = [
-        (one.settings.name, source, one.mappings[source_name(source)])
+        (
+            one.settings.name,
+            {*one.model.sensors, *one.model.context},
+            source,
+            one.mappings[source_name(source)],
+        )
         for one in files
         for source in one.settings.source
     ]
