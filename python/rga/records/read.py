@@ -41,8 +41,7 @@ def read_table(
     if not data:
         raise InputError("the file is empty", str(path), "give a file with a header and rows")
     table = read_format(data, path, mapping or FileMapping(), known)
-    if table.frame.height == 0:
-        raise InputError("there are no rows below the header", str(path), "give at least one row")
+    table.check_rows()
     units = {column: unit for column, unit in table.units.items() if not states_none(unit)}
     if table.skipped:
         shown = ", ".join(map(str, table.skipped[:3])) + (", ..." if len(table.skipped) > 3 else "")

@@ -79,6 +79,16 @@ class Table:
         place = f"{self.path}, {self.row_name} {line}"
         return place if column is None else f"{place}, column {column!r}"
 
+    def check_rows(self) -> None:
+        """Whether there are rows.
+
+        Raises:
+            InputError: there is none.
+        """
+        if self.frame.height == 0:
+            what = "there are no rows below the header"
+            raise InputError(what, str(self.path), "give at least one row")
+
     def numbers(self, column: str, missing: tuple[str, ...] = ()) -> FloatArray:
         """A column as float[n], NaN where a cell is empty or says that a value is missing.
 

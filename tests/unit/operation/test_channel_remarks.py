@@ -123,3 +123,9 @@ def test_a_mapping_that_speaks_of_what_is_not_there_is_refused_at_the_start(mode
         reader_of(model, D1=Channel(unit="kg"))
     with pytest.raises(SeveralMistakes, match="2 mistakes"):
         reader_of(model, D9=Channel(), D1=Channel(unit="furlong"))
+
+
+def test_a_file_without_rows_is_refused_in_words(model: Model) -> None:
+    refused = came(reader_of(model), "time,D1\n,cm\n").refused
+    assert refused is not None
+    assert "there are no rows below the header" in refused

@@ -70,6 +70,7 @@ class TableReader:
         """
         check_size(payload, str(self._where))
         table = read_format(payload, self._where, mapping, self._columns)
+        table.check_rows()
         check_names(table.frame.columns, str(self._where))
         chosen = _for(table, mapping)
         clock = read_clock(table, chosen.time)
