@@ -28,7 +28,7 @@ from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.laplace import extended
 from rga.findings import Findings
 from rga.findings.modal_arrays import ModalArrays
-from rga.findings.phrases import effect_words, place_words
+from rga.findings.phrases import effect_words, explanation_words, place_words
 from rga.findings.schema import Cause, Explanation, Unidentifiable
 from rga.model import Model
 from rga.records import Record
@@ -235,7 +235,7 @@ class ToldModes:
         effects = [content(one) for one in estimated_effects(fit.static, self.record)]
         off = (problem.data.readings - fit.static.simulated) / problem.noise.sigma
         return Explanation(
-            words="; ".join(map(effect_words, effects)) or "no effect at all",
+            words=explanation_words(effects),
             effects=effects,
             log_odds=round(fit.log_evidence, DECIMALS) + 0.0,
             gap=float((off[problem.data.observed] ** 2).mean()),
