@@ -70,6 +70,20 @@ def diagnose_modes(
         InputError: a file cannot be used, no mode of the model is in the record, or the model
             cannot be simulated.
         UnstableStructureError: the structure can move; names node and direction.
+
+    >>> import rga
+    >>> from rga.model.schema import ExpectedMode
+    >>> mast = rga.ModelBuilder("mast").add_material("steel", "S355").add_section("tube", "HEB 200")
+    >>> mast = mast.add_node("foot").add_node("head", z="6 m").support("foot", "fixed")
+    >>> mast = mast.add_member("foot", "head", "tube", kind="frame").mass("head", "500 kg").build()
+    >>> modes = {"sway": ExpectedMode(near=1.588), "nod": ExpectedMode(near=2.678)}
+    >>> mast = mast.model_copy(update={"modes": modes})
+    >>> frequencies = np.tile([1.588, 2.678], (40, 1))  # [Hz], in each window
+    >>> frequencies *= 1 + 0.002 * np.random.default_rng(0).standard_normal((40, 2))
+    >>> found = [{"Fn": 0.9 * window} for window in frequencies]
+    >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(40)])
+    >>> diagnose_modes(mast, record).verdict  # fewer than three modes decide nothing
+    'partial'
     """
     tell = progress or (lambda stage, done: None)
     model, seed, chosen = as_model(model), as_seed(seed), as_criteria(criteria)
