@@ -20,7 +20,14 @@ from rga.diagnosis.modal.account import (
 )
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
-from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import (
+    apart_in_time,
+    doubtful_windows,
+    drifting,
+    thin,
+    warnings_of,
+    weather,
+)
 from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
@@ -97,6 +104,9 @@ class ToldModes:
         first = len(causes) - len(self.mixed.fit.hypotheses)
         for number in range(len(self.mixed.fit.hypotheses)):
             causes[first + number] = self._cause(causes[first + number], number)
+        readings, record = likelihood.readings, self.record
+        warnings = warnings_of(model, readings)
+        warnings += apart_in_time(readings.time, record.origin + record.time)
         told = findings.model_copy(
             update={
                 "gap": gap,
@@ -106,7 +116,7 @@ class ToldModes:
                 "windows": windows_of(likelihood),
                 "unidentifiable": self._unseen(findings),
                 "groups": [*findings.groups, *mode_groups(model, likelihood, *ends)],
-                "warnings": [*findings.warnings, *warnings_of(model, likelihood.readings)],
+                "warnings": [*findings.warnings, *warnings],
             }
         )
         told._account = findings._account

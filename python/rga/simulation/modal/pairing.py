@@ -9,6 +9,8 @@ import scipy
 
 from rga.arrays import FloatArray, IntArray
 
+#: square of the length below which a shape is rounding
+LEAST_LENGTH = float(np.finfo(float).tiny)
 #: what 1 - MAC of a mode and itself is, on average, where the model errs and sensors are noisy
 SHAPE_ERROR = 0.05
 #: pairings that are as good but for this are all carried: a factor of a hundred in probability
@@ -227,7 +229,7 @@ def apart(shape: FloatArray, own: FloatArray, parts: FloatArray) -> tuple[FloatA
         float[points], and float[k, points] for the length of this shape.
     """
     length = float(own @ own)
-    if length == 0.0:
+    if length < LEAST_LENGTH:
         return shape, parts
     size = float(np.linalg.norm(shape))
     off = shape - own * (float(own @ shape) / length)

@@ -12,6 +12,7 @@ from rga.model.schema import Model
 from rga.quantities import counted
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.simulator import ModalSimulator
+from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import named_modes
 from rga.twin.sync.context_courses import ContextCourses, outside, without_courses
 from rga.twin.sync.protocol import OutOfSync, listed
@@ -86,6 +87,7 @@ def watch_modes(
     """
     simulator = ModalSimulator(model)
     named = named_modes(record, model, simulator.expected)
+    check_units(named, record, simulator.expected, model)
     windows = len(named.time)
     if not 0 < baseline < windows:
         raise InputError(
