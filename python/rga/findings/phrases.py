@@ -28,6 +28,18 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     return f"{kind_words(effect['kind'])}{of}{kind.size_words(effect)}{_onset(effect)}"
 
 
+def explanation_words(effects: Iterable[Mapping[str, Any]]) -> str:
+    """Effects that act together in words: by these an explanation is known again.
+
+    >>> gain = {"kind": "sensor_gain", "sensor": "S1", "factor": 1.2}
+    >>> explanation_words([gain, {**gain, "sensor": "S2"}])
+    'sensor gain of S1: factor 1.2 + sensor gain of S2: factor 1.2'
+    >>> explanation_words([])
+    'the model as it is'
+    """
+    return " + ".join(map(effect_words, effects)) or "the model as it is"
+
+
 def kind_words(kind: str) -> str:
     """A kind in words, one that is not known too.
 

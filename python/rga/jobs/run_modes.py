@@ -62,6 +62,24 @@ def run_modes(
         InputError: a file cannot be used, the record is too short to say what is usual, or a
             setting says nothing of modes.
         ReportError: the report could not be drawn; findings and model are there.
+
+    >>> import numpy as np
+    >>> import rga
+    >>> from rga.model.schema import ExpectedMode
+    >>> mast = rga.ModelBuilder("mast").add_material("steel", "S355").add_section("tube", "HEB 200")
+    >>> mast = mast.add_node("foot").add_node("head", z="6 m").support("foot", "fixed")
+    >>> mast = mast.add_member("foot", "head", "tube", kind="frame").mass("head", "500 kg").build()
+    >>> modes = {"sway": ExpectedMode(near=1.588), "nod": ExpectedMode(near=2.678)}
+    >>> mast = mast.model_copy(update={"modes": modes})
+    >>> frequencies = np.tile([1.588, 2.678], (200, 1))  # [Hz], in each window
+    >>> frequencies *= 1 + 0.002 * np.random.default_rng(0).standard_normal((200, 2))
+    >>> frequencies[160:] *= 0.97
+    >>> found = [{"Fn": window} for window in frequencies]
+    >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(200)])
+    >>> from tempfile import mkdtemp
+    >>> outcome = run_modes(mast, record, mkdtemp())
+    >>> outcome.findings.verdict, outcome.watched.baseline, len(outcome.watched.warnings)
+    ('partial', 66, 0)
     """
     model, settings = as_model(model), as_settings(settings)
     idle = sorted(settings.model_fields_set - USED)

@@ -36,6 +36,10 @@ AboveZero = Annotated[
 ]
 
 
+#: change of a factor by one unit of a context beyond which it is a slip: of per cent for a share
+STEEPEST = 5.0
+
+
 class Driven(BaseModel):
     """A parameter that follows a context variable: times * (context - minus).
 
@@ -71,6 +75,12 @@ class Driven(BaseModel):
             return "times, minus and log10 say nothing where there is a kink: give below and above"
         if self.at is None and (neutral is None or not np.isfinite(neutral)):
             return "give 'at', the parameter at the kink"
+        steepest = max(self.below, self.above, key=abs)
+        if neutral == 1.0 and abs(steepest) > STEEPEST:
+            return (
+                f"the factor changes by {abs(steepest):g} with every unit of {self.context!r}: "
+                "give below and above as shares of one, such as -0.01"
+            )
         return ""
 
     def follow(self, context: FloatArray, neutral: float | None = None) -> FloatArray:

@@ -19,6 +19,8 @@ from rga.findings.phrases import effect_words
 from rga.model import Model, as_model
 from rga.numerics.seeds import as_seed
 from rga.planning.advised import advised
+from rga.planning.modal.candidates import PARKED_MASS
+from rga.planning.modal.practical import impractical
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
 from rga.planning.result import Advised, Plan, PlannedTruck, Ranked, Separation, SimulatedTrials
@@ -95,6 +97,7 @@ def _planned(
     if lane is None and findings.windows is not None:
         lane = lane_of_masses(model)
     warnings: list[str] = []
+    given = truck is not None
     if lane is None and truck is not None:
         raise InputError(
             "the model shows no path for a truck", "--truck", "name the nodes of it with --path"
@@ -120,6 +123,9 @@ def _planned(
         )
     progress("simulating what could be measured", 0.0)
     scope = scope_of(model, findings, rivalries, lane, truck, warnings)
+    parking = any(test.kind == PARKED_MASS for test in scope.site.tests)
+    too_much = impractical(model, truck, given) if parking and truck is not None else None
+    warnings += [too_much] if too_much is not None else []
     progress("choosing measurements", 0.0)
     chooser = scope.chooser(_separable(scope))
     sensors, tests = advised(findings, scope.site.added, scope.site.tests)
@@ -151,10 +157,12 @@ def _planned(
     site, pairs = scope.site, scope.pairs
     made = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
     driven = any(test.position is not None for test in made)
+    parked = any(site.tests[one].kind == PARKED_MASS for one in choice.tests)
     return Plan(
         sentence=" ".join(
             [
                 _sentence(separations, scope, choice),
+                *([f"Of this plan, {too_much}."] if too_much is not None and parked else []),
                 *_compared(beside, least),
                 *_by_modes(model, findings),
             ]

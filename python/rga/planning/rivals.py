@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from rga.errors import InputError
 from rga.experiments.explanation import CandidateModel, explanation
-from rga.findings.phrases import effect_words
+from rga.findings.phrases import effect_words, explanation_words
 from rga.findings.schema import Cause, Findings
 from rga.model import Effect, Model, read_effect
 from rga.model.effects.sensors.sensor_fault import is_fault
@@ -54,8 +54,9 @@ def told_apart(findings: Findings, one: str, other: str) -> float | None:
         one, other: in words.
 
     Returns:
-        They, for the first; None where either was not tried as it stands, or where they are rivals
-        by the data alone: what is usual of a modulus, a mass or a clock tells nothing apart.
+        They, for the first, with what is usual of its parameters counted; None where either was not
+        tried as it stands, or where they are rivals by the data alone: what is usual of a modulus,
+        a mass or a clock tells nothing apart.
     """
     odds = {tried.words: tried.log_odds for tried in findings.explanations}
     if one not in odds or other not in odds:
@@ -78,8 +79,7 @@ def _advised_against(cause: Cause, rival: Mapping[str, Any]) -> bool:
 
 def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> CandidateModel:
     known = [_effect(model, effect) for effect in effects]
-    words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
-    return explanation(words, model, known)
+    return explanation(explanation_words(effects), model, known)
 
 
 def _effect(model: Model, content: Mapping[str, Any]) -> Effect:

@@ -20,7 +20,14 @@ from rga.experiments.truck import Lane, Truck
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.model import Model
-from rga.planning.modal.candidates import accelerometers, more_windows, parked, seasons
+from rga.planning.modal.candidates import (
+    PARKED_MASS,
+    accelerometers,
+    more_windows,
+    parked,
+    seasons,
+)
+from rga.planning.modal.practical import mass_of
 from rga.planning.modal.site import ModalSite
 from rga.planning.modal.with_gauges import SiteWithModes
 from rga.planning.rivals import working_sensors
@@ -109,7 +116,8 @@ def scope_of(
         model, working, added, tests, usual_operation(model), lane, truck, LEVELS
     )
     named = rivalries[0][0].effects
-    modes = _modes(model, findings, [one for both in rivalries for one in both], lane, truck)
+    every_one = [one for both in rivalries for one in both]
+    modes = _modes(model, findings, every_one, lane, truck, warnings)
     site: Site = gauges if modes is None else SiteWithModes(gauges, modes)
     pairs, failed = [], []
     for cause, rival in rivalries:
@@ -134,10 +142,12 @@ def _modes(
     explanations: Sequence[CandidateModel],
     lane: Lane | None,
     truck: Truck | None,
+    warnings: list[str],
 ) -> ModalSite | None:
     """What could be measured of modes, but for places of a truck that make their names doubtful.
 
-    They do where they do by any of the explanations that can be simulated.
+    They do where they do by any of the explanations that can be simulated. That no place is left
+    becomes a warning.
     """
     windows = findings.windows
     if windows is None:
@@ -152,4 +162,10 @@ def _modes(
         with suppress(InputError):
             doubtful |= set(site.doubtful(one.effects))
     clear = [number for number in range(len(tests)) if number not in doubtful]
+    parking = [number for number, test in enumerate(tests) if test.kind == PARKED_MASS]
+    if truck is not None and parking and not set(parking) & set(clear):
+        warnings.append(
+            f"no parked mass is planned: {mass_of(truck):.3g} t make it doubtful wherever they "
+            "stand which mode is which; give a lighter truck with --truck"
+        )
     return site.only(range(len(site.added)), clear)

@@ -305,7 +305,9 @@ class Simulator:
             if name not in given:
                 if name in self.driven:
                     raise InputError(
-                        f"the context {name!r} is missing", "contexts", "give a value a row"
+                        f"the context {name!r} is missing",
+                        "contexts",
+                        f"give a value a row; on the command line one for all, --contexts {name}=",
                     )
                 continue
             column = given[name]

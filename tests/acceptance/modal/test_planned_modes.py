@@ -113,6 +113,41 @@ def test_doing_it_tells_mass_from_modulus(seed: int, make: Callable[[], Hidden])
     assert null.causes == []
 
 
+def lateral() -> Hidden:
+    return Hidden(spring={"b0n": 3e6, "b0s": 3e6})
+
+
+def test_what_the_record_says_of_the_model_as_it_is_stands_beside_it() -> None:
+    findings, found = planned(0, lateral)
+    assert findings.verdict == "named"
+    odds = {one.words: one.log_odds for one in findings.explanations}
+    assert odds["the model as it is"] == 0.0
+    pair = found.separations[-1]
+    assert pair.other == "the model as it is"
+    assert pair.log_odds == findings.explanations[0].log_odds > 100.0
+
+
+@pytest.mark.parametrize(
+    ("truck", "warning"),
+    [
+        ("40,40@4", "the mass of 8.16 t that is to be parked is 0.18 of the "),
+        pytest.param(
+            "4000,4000@4", "no parked mass is planned: 816 t make it doubtful", marks=thorough
+        ),
+    ],
+)
+def test_a_mass_that_is_large_for_the_structure_is_told(truck: str, warning: str) -> None:
+    model, _ = measured(0, lateral(), windows=WINDOWS)
+    findings, small = planned(0, lateral)
+    assert not [one for one in small.warnings if "parked" in one]
+    found = plan(model, findings, sensors=0, positions=1, truck=truck)
+    (told,) = [one for one in found.warnings if "parked" in one]
+    assert told.startswith(warning)
+    stands = found.ranked[0].kind == "parked mass"
+    assert stands == told.startswith("the mass")
+    assert ("which is more than is practical" in found.sentence) == stands
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_gauges_under_a_known_load_tell_a_modulus_from_a_clock(seed: int) -> None:
     model, record, modal = mixed(seed, softer())

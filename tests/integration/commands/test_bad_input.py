@@ -289,6 +289,18 @@ def test_contexts_that_do_not_fit(
     assert not (tmp_path / "o.csv").exists()
 
 
+def test_a_model_without_gauges_is_not_simulated(
+    tmp_path: Path, model_file: Path, rga: Callable[..., Any]
+) -> None:
+    content = json.loads(model_file.read_text(encoding="utf-8"))
+    model_file.write_text(json.dumps({**content, "sensors": {}}), encoding="utf-8")
+    (tmp_path / "contexts.csv").write_text("temperature,load\n1,2\n", encoding="utf-8")
+    outcome = rga("simulate", model_file, tmp_path / "contexts.csv", "-o", tmp_path / "o.csv")
+    assert outcome.code == 2
+    assert "the model has no gauges" in one_line(outcome.err)
+    assert not (tmp_path / "o.csv").exists()
+
+
 def test_a_name_that_looks_like_markup_is_shown_as_it_is(
     tmp_path: Path, model_file: Path, rga: Callable[..., Any]
 ) -> None:

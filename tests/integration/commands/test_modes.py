@@ -184,3 +184,19 @@ def test_what_cannot_be_watched_is_refused(
         done = rga("run", mast, *arguments, *out)
         assert done.code == 2, arguments
         assert words in done.err
+
+
+def test_a_context_that_drives_the_structure_is_asked_for_by_its_option(
+    rga: Callable[..., Any], mast: Path
+) -> None:
+    content = json.loads(mast.read_text())
+    content["context"] = {"stiff": {"unit": "-", "range": [0.5, 2.0]}}
+    factor = {"context": "stiff"}
+    soft = {"kind": "elastic_modulus", "material": "steel", "factor": factor}
+    content["effects"] = {"soft": soft}
+    mast.write_text(json.dumps(content))
+    done = rga("modes", mast)
+    assert done.code == 2
+    assert "the context 'stiff' is missing" in done.err
+    assert "--contexts stiff=" in done.err
+    assert rga("modes", mast, "--contexts", "stiff=1").code == 0

@@ -49,6 +49,7 @@ def test_windows_become_a_record(rga: Callable[..., Outcome], logged: Path, tmp_
         (("--highest", 50, "--minutes", 2), "do not show frequencies up to 50 Hz"),
         (("--highest", 5, "--minutes", 20), "give shorter"),
         (("--highest", 5, "--minutes", 0.1), "give windows of"),
+        (("--highest", 5, "--minutes", 0), "a window of 0 s holds no two readings"),
     ],
 )
 def test_what_cannot_be_found_is_told(

@@ -77,6 +77,12 @@ def test_where_nothing_is_neutral_the_kink_needs_a_value() -> None:
         beam({**soft, "stiffness": {"context": "air", "kink": 0.0, "below": -5e4}})
 
 
+def test_a_factor_that_runs_away_is_refused() -> None:
+    soft = {"kind": "elastic_modulus", "material": "steel"}
+    with pytest.raises(InputError, match="changes by 10 with every unit of 'air': give below"):
+        beam({**soft, "factor": {"context": "air", "kink": 0.0, "below": -10.0}})
+
+
 def test_no_temperature_has_a_kink() -> None:
     warm = {"kind": "temperature", "groups": {"all": 1.0}, "delta": {"context": "air", "kink": 0.0}}
     with pytest.raises(InputError, match="linearly"):

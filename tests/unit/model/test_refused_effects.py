@@ -50,5 +50,7 @@ def test_a_stiffness_needs_one_temperature_to_follow() -> None:
         bridge(own={**own, "of": "EI"})
     with pytest.raises(InputError, match="holds below a kink: give kink"):
         bridge(own={**own, "below": -0.01})
+    with pytest.raises(InputError, match="-10 1/K, by which the stiffness changes by 1000 %"):
+        bridge(own={**own, "kink": 0.0, "below": -10.0})
     with pytest.raises(InputError, match="kink"):
         bridge(own=own, sun={**sun, "delta": {"context": "temperature"}})

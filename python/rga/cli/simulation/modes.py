@@ -73,6 +73,9 @@ def measured_words(measured: "DataFrame", named: "NamedModes", record: "ModalRec
         f"are none of those expected; in {counted(len(named.doubtful), 'window')} another pairing "
         "is nearly as probable."
     )
+    if record.repeated:
+        entry = "entry stands" if record.repeated == 1 else "entries stand"
+        lines.append(f"{record.repeated} {entry} in it more than once: each counts once.")
     if record.left_out:
         lines.append(f"Columns that are not used: {', '.join(record.left_out)}.")
     return "\n".join(lines)
@@ -96,6 +99,7 @@ def modes(
     from rga.records.modal.read import load_modal_record
     from rga.simulation import ModalSimulator
     from rga.simulation import modes as modes_of
+    from rga.simulation.modal.units import check_units
     from rga.simulation.modal.windows import named_modes, summary
 
     structure, given = load_model(model), settings(contexts, "--contexts")
@@ -111,6 +115,7 @@ def modes(
     if simulator is not None and record is not None:
         read = load_modal_record(record, structure)
         named = named_modes(read, structure, simulator.expected)
+        check_units(named, read, simulator.expected, structure)
         measured = summary(named, read, simulator.expected)
         words.append(measured_words(measured, named, read))
         content |= {"record": {"sha256": read.sha256}, "measured": measured.to_dicts()}

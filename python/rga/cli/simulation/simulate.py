@@ -21,6 +21,7 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
     import polars as pl
 
     from rga.cli.output import whole_file
+    from rga.errors import InputError
     from rga.files import wrong_ending
     from rga.model import load_model
     from rga.model.effect import when_all_act
@@ -32,6 +33,12 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
     if suffix not in (".csv", ".parquet"):
         raise wrong_ending(output, "record", (".csv", ".parquet"))
     structure = load_model(model)
+    if not structure.sensors:
+        raise InputError(
+            "the model has no gauges, and what is simulated would be the contexts alone",
+            f"model {structure.name!r}, sensors",
+            "state sensors; `rga results` gives what moves without any, `rga modes` frequencies",
+        )
     given = load_contexts(contexts, structure)
     if "time" not in given.values and when_all_act(structure.effects.values()) is not None:
         typer.echo("warning: without a column time, effects that begin late do not act", err=True)

@@ -10,7 +10,7 @@ from rga.diagnosis.checks.explanations import Tried
 from rga.diagnosis.search.laplace import Fit
 from rga.diagnosis.search.screening import Prospect
 from rga.diagnosis.search.stepwise import Found
-from rga.findings.phrases import effect_words, place_words
+from rga.findings.phrases import explanation_words, place_words
 from rga.findings.schema import (
     Explanation,
     Unidentifiable,
@@ -34,7 +34,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             remark = "fits, and says nothing of channels that were not fitted"
         else:
             effects = [content(effect) for effect in estimated_effects(one.fit, record)]
-            words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
+            words = explanation_words(effects)
             odds = one.fit.log_evidence
             remark = _remark(one, named, found)
         explanations.append(

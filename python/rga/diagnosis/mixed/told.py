@@ -20,7 +20,14 @@ from rga.diagnosis.modal.account import (
 )
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
-from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import (
+    apart_in_time,
+    doubtful_windows,
+    drifting,
+    thin,
+    warnings_of,
+    weather,
+)
 from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
@@ -28,7 +35,7 @@ from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.laplace import extended
 from rga.findings import Findings
 from rga.findings.modal_arrays import ModalArrays
-from rga.findings.phrases import effect_words, place_words
+from rga.findings.phrases import effect_words, explanation_words, place_words
 from rga.findings.schema import Cause, Explanation, Unidentifiable
 from rga.model import Model
 from rga.records import Record
@@ -97,6 +104,9 @@ class ToldModes:
         first = len(causes) - len(self.mixed.fit.hypotheses)
         for number in range(len(self.mixed.fit.hypotheses)):
             causes[first + number] = self._cause(causes[first + number], number)
+        readings, record = likelihood.readings, self.record
+        warnings = warnings_of(model, readings)
+        warnings += apart_in_time(readings.time, record.origin + record.time)
         told = findings.model_copy(
             update={
                 "gap": gap,
@@ -106,7 +116,7 @@ class ToldModes:
                 "windows": windows_of(likelihood),
                 "unidentifiable": self._unseen(findings),
                 "groups": [*findings.groups, *mode_groups(model, likelihood, *ends)],
-                "warnings": [*findings.warnings, *warnings_of(model, likelihood.readings)],
+                "warnings": [*findings.warnings, *warnings],
             }
         )
         told._account = findings._account
@@ -235,7 +245,7 @@ class ToldModes:
         effects = [content(one) for one in estimated_effects(fit.static, self.record)]
         off = (problem.data.readings - fit.static.simulated) / problem.noise.sigma
         return Explanation(
-            words="; ".join(map(effect_words, effects)) or "no effect at all",
+            words=explanation_words(effects),
             effects=effects,
             log_odds=round(fit.log_evidence, DECIMALS) + 0.0,
             gap=float((off[problem.data.observed] ** 2).mean()),

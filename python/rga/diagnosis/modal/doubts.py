@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import (
     MOST_MEMORY,
     REPEATS,
+    UNKNOWN_SCATTER,
     ModalReadings,
     context_courses,
     scaled_contexts,
@@ -118,6 +120,14 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
             f"paired by frequency only, without a shape: {', '.join(by_frequency)}; what trades "
             "places with another mode passes for what moves"
         )
+    assumed = [
+        name for name, shown in zip(readings.modes, readings.shown, strict=True) if not shown
+    ]
+    if assumed:
+        warnings.append(
+            f"how the frequencies of {', '.join(assumed)} scatter is assumed, as f_sd states it or "
+            f"else {100 * UNKNOWN_SCATTER:g} %: they were found in too few windows to show it"
+        )
     if readings.uncovered:
         warnings.append(
             f"left out: {counted(readings.uncovered, 'window')} in which a context is not known"
@@ -137,9 +147,7 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
 def odd_entries(model: Model, record: ModalRecord) -> list[str]:
     """In words: what a modal record can hardly mean as it is written."""
     warnings = []
-    entries = np.column_stack([record.time, record.frequency])
-    twice = len(entries) - len(np.unique(entries, axis=0))
-    if twice:
+    if twice := record.once().repeated:
         entry = "entry stands" if twice == 1 else "entries stand"
         warnings.append(f"{twice} {entry} in the record more than once: each counts once")
     longest = float(np.nanmax(record.duration, initial=0.0))
@@ -159,3 +167,24 @@ def odd_entries(model: Model, record: ModalRecord) -> list[str]:
                 "check its unit and its zero"
             )
     return warnings
+
+
+def apart_in_time(modes: FloatArray, record: FloatArray) -> list[str]:
+    """In words: that windows of modes and the rows of a record have no time in common.
+
+    Args:
+        modes: middles of the windows on the scale of onsets [s], float[windows].
+        record: its rows [s], float[rows].
+
+    >>> apart_in_time(np.array([5.0]), np.array([0.0, 10.0]))
+    []
+    """
+    gap = max(record.min() - modes.max(), modes.min() - record.max())
+    if gap <= 0.0:
+        return []
+    length, unit = duration(float(gap))
+    words = (
+        f"modes and record have no time in common, {short(length)} {unit} lie between them: either "
+        "what is wrong was there in both, or one of the two clocks is not right"
+    )
+    return [words]

@@ -15,7 +15,7 @@ from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warning
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
-from rga.diagnosis.modal.remarks import rival_words
+from rga.diagnosis.modal.remarks import apart_words, rival_words
 from rga.diagnosis.modal.search import ModalFound, search
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
@@ -23,7 +23,7 @@ from rga.diagnosis.search.laplace import effects_at
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.modal_arrays import ModalArrays
-from rga.findings.phrases import effect_words, place_words
+from rga.findings.phrases import effect_words, explanation_words, place_words
 from rga.findings.schema import (
     Cause,
     Explanation,
@@ -70,6 +70,20 @@ def diagnose_modes(
         InputError: a file cannot be used, no mode of the model is in the record, or the model
             cannot be simulated.
         UnstableStructureError: the structure can move; names node and direction.
+
+    >>> import rga
+    >>> from rga.model.schema import ExpectedMode
+    >>> mast = rga.ModelBuilder("mast").add_material("steel", "S355").add_section("tube", "HEB 200")
+    >>> mast = mast.add_node("foot").add_node("head", z="6 m").support("foot", "fixed")
+    >>> mast = mast.add_member("foot", "head", "tube", kind="frame").mass("head", "500 kg").build()
+    >>> modes = {"sway": ExpectedMode(near=1.588), "nod": ExpectedMode(near=2.678)}
+    >>> mast = mast.model_copy(update={"modes": modes})
+    >>> frequencies = np.tile([1.588, 2.678], (40, 1))  # [Hz], in each window
+    >>> frequencies *= 1 + 0.002 * np.random.default_rng(0).standard_normal((40, 2))
+    >>> found = [{"Fn": 0.9 * window} for window in frequencies]
+    >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(40)])
+    >>> diagnose_modes(mast, record).verdict  # fewer than three modes decide nothing
+    'partial'
     """
     tell = progress or (lambda stage, done: None)
     model, seed, chosen = as_model(model), as_seed(seed), as_criteria(criteria)
@@ -178,8 +192,9 @@ def _causes(
         if nearest is not None:
             against = effect_words(content(estimated(nearest, len(nearest.hypotheses) - 1)))
             words = f"against {against}: {separating(likelihood, found.fit, nearest)}"
+            whole = found.fit.log_evidence - nearest.log_evidence
             if ranked[0][1] >= criteria.rivals.log_odds:
-                words += f"; these modes tell them apart by {ranked[0][1]:.0f} log-odds"
+                words += f"; {apart_words(ranked[0][1], whole)}"
         listed = [content(estimated(one, len(one.hypotheses) - 1)) for one in rivals]
         causes.append(
             Cause(
@@ -242,7 +257,7 @@ def _explanations(
         effects = [content(estimated(one, number)) for number in range(len(one.hypotheses))]
         explanations.append(
             Explanation(
-                words="; ".join(map(effect_words, effects)) or "no effect at all",
+                words=explanation_words(effects),
                 effects=effects,
                 log_odds=round(one.log_evidence, DECIMALS) + 0.0,
                 gap=float(squares(likelihood, one.prediction).mean()),

@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.pairing import Expected, mac
 from rga.simulation.modal.simulator import ModalSimulator
+from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import named_modes
 
 #: scatter of a frequency of which nothing is known: one test repeated gives half to two per cent
@@ -60,6 +61,7 @@ class ModalReadings(ModalWindows):
         record: out of which they are.
         weather: contexts that may move modes beside what the model says.
         scatter: of one window beside the others, as a share of the frequency, float[modes].
+        shown: whether windows enough show it, bool[modes]; else it is what is stated, or usual.
         memory: correlation of the errors of a window and the next, float[modes].
         shape_noise: what 1 - MAC of the mean shape is by noise, float[modes].
         found: share of the windows in which each mode was found, float[modes].
@@ -73,6 +75,7 @@ class ModalReadings(ModalWindows):
     record: ModalRecord
     weather: dict[str, FloatArray]
     scatter: FloatArray
+    shown: BoolArray
     memory: FloatArray
     shape_noise: FloatArray
     found: FloatArray
@@ -106,16 +109,16 @@ class ModalReadings(ModalWindows):
         record = _covered(record, simulator.needed, model)
         uncovered = every - len(np.unique(record.time))
         named = named_modes(record, model, expected, changed)
+        check_units(named, record, expected, model)
         few = len(named.doubtful) <= FEW * len(named.time)
         unsure = np.isin(record.windows, named.doubtful) & few
         mode = np.where(unsure, -1, named.mode)
         names = [name for k, name in enumerate(expected) if (mode == k).any()]
         if not names:
             raise InputError(
-                "none of the modes that the model expects is in the record",
+                "which mode is which is in doubt in every window",
                 f"modes {', '.join(expected)} of model {model.name!r}",
-                "compare the frequencies and shapes of the record with `near`, `within` and "
-                "`shape` of the modes, and the names of the points",
+                "give the shapes of the modes at points that tell them apart",
             )
         windows = record.windows
         count = len(named.time)
@@ -140,7 +143,7 @@ class ModalReadings(ModalWindows):
             name: np.array([column[windows == one][0] for one in range(count)])
             for name, column in record.contexts.items()
         }
-        scatter, memory = _noise(log_f, contexts, stated)
+        scatter, shown, memory = _noise(log_f, contexts, stated)
         return cls(
             record=record,
             modes=tuple(names),
@@ -149,6 +152,7 @@ class ModalReadings(ModalWindows):
             weather=weather(model, contexts),
             log_f=log_f,
             scatter=scatter,
+            shown=shown,
             memory=memory,
             looks=tuple(looks),
             shape_noise=shape_noise,
@@ -263,8 +267,8 @@ def _reference(given: Expected, at: IntArray) -> FloatArray:
 
 def _noise(
     log_f: FloatArray, contexts: dict[str, FloatArray], stated: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Scatter and memory of the frequencies about what contexts do to them."""
+) -> tuple[FloatArray, BoolArray, FloatArray]:
+    """Scatter of the frequencies about what contexts do to them, where it shows, and memory."""
     windows, modes = log_f.shape
     columns = np.column_stack([np.ones(windows), context_courses(contexts, windows).T])
     scatter, memory = np.zeros(modes), np.zeros(modes)
@@ -288,7 +292,7 @@ def _noise(
         kept = float(np.clip(np.median(far / np.maximum(near, 1e-300)) - 1.0, 0.0, MOST_MEMORY))
         memory[shown] = kept
         scatter[shown] = np.sqrt(near / (2.0 * (1.0 - kept)))
-    return np.maximum(scatter, LEAST_SCATTER), memory
+    return np.maximum(scatter, LEAST_SCATTER), shown, memory
 
 
 def context_courses(contexts: dict[str, FloatArray], windows: int) -> FloatArray:

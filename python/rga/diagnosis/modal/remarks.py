@@ -22,3 +22,20 @@ def rival_words(behind: float, whole: float, criteria: Criteria) -> str:
         words = "cannot be separated from what is named"
     alone = " by the data alone" if behind < whole - SAME else ""
     return f"{words} ({-behind:+.1f} log-odds{alone})"
+
+
+def apart_words(behind: float, whole: float) -> str:
+    """Of the nearest explanation that is rejected: by what the modes tell it from what is named.
+
+    Args:
+        behind, whole: as for `rival_words`.
+
+    >>> apart_words(41.0, 41.0)
+    'these modes tell them apart by 41 log-odds'
+    >>> apart_words(11.0, 15.0)
+    'these modes tell them apart by 11 log-odds alone, by 15 with what is usual of their parameters'
+    """
+    words = f"these modes tell them apart by {behind:.0f} log-odds"
+    if not behind < whole - SAME:
+        return words
+    return f"{words} alone, by {whole:.0f} with what is usual of their parameters"

@@ -10,6 +10,7 @@ from rga.findings.schema import Windows
 from rga.model import Model
 from rga.model.schema import MeasuringPoint
 from rga.model.structure.arrays import HELD_BY_PLANE
+from rga.planning.modal.practical import mass_of
 
 #: what a measurement costs, in strain gauges put on: windows cost waiting, a season most of it
 ACCELEROMETER_COST, PARKED_COST, WINDOWS_COST, SEASON_COST = 1.0, 1.5, 0.5, 2.0
@@ -51,7 +52,7 @@ def parked(lane: Lane, truck: Truck) -> list[LoadTest]:
     return [
         LoadTest(
             f"{lane.load} at {place:.2f} m (node {lane.nearest(place)}), left there with a known "
-            f"mass through {PARKED_WINDOWS} windows of modes",
+            f"mass of {mass_of(truck):.3g} t through {PARKED_WINDOWS} windows of modes",
             {},
             {},
             place,

@@ -141,11 +141,17 @@ def windows_of(measured: Decay, seconds: float) -> list[Decay]:
         seconds: that each lasts.
 
     Raises:
-        InputError: not one window lasts as long.
+        InputError: not one window lasts as long, or one holds no two readings.
     """
     samples = round(seconds / measured.step)
-    count = len(measured.motion) // max(samples, 1)
-    if count == 0 or samples < 2:
+    if samples < 2:
+        raise InputError(
+            f"a window of {seconds:g} s holds no two readings, one comes every {measured.step:g} s",
+            "--minutes",
+            "give longer windows, of some minutes",
+        )
+    count = len(measured.motion) // samples
+    if count == 0:
         raise InputError(
             f"the file lasts {measured.duration:g} s", f"windows of {seconds:g} s", "give shorter"
         )

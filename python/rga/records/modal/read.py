@@ -24,6 +24,13 @@ from rga.records.modal.columns import (
 )
 from rga.records.modal.formats import read_modal_table
 from rga.records.modal.record import ModalRecord
+from rga.records.modal.unusable import (
+    check_lines,
+    check_phases,
+    check_shapes,
+    check_window,
+    one_unit,
+)
 from rga.records.table import Table
 from rga.records.times import read_clock
 
@@ -54,8 +61,8 @@ def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
 
     Raises:
         InputError: a column is missing, holds no number or has another unit; a frequency is not
-            above zero, as those that are normalised; an imaginary part stands alone; or no entry is
-            there.
+            above zero, as those that are normalised; a shape is zero, is without phase or has two
+            units; a context has two values in a window; or no entry is there.
         MissingPackageError: a package that reads the format is not installed.
     """
     named = modes_of_columns(model)
@@ -102,9 +109,13 @@ def modal_record_of(table: Table, model: Model) -> ModalRecord:
             str(table.path),
             "give the real part as well: without it the phase is not known",
         )
+    check_phases(table, model.points)
     shapes, realness = _shapes(table, points)
+    check_shapes(table, points, shapes)
     time, start = _time(table)
     contexts = {name: table.numbers(name) for name in model.context if name in columns}
+    for name, column in contexts.items():
+        check_window(table, name, column, time)
     used = {*COLUMNS, *points, *model.context, *(name + IMAGINARY for name in points)}
     return ModalRecord(
         time=time,
@@ -123,7 +134,7 @@ def modal_record_of(table: Table, model: Model) -> ModalRecord:
         contexts=contexts,
         left_out=tuple(name for name in columns if name not in used),
         sha256=table.sha256,
-    )
+    ).once()
 
 
 def modes_of_columns(model: Model) -> dict[str, str]:
@@ -151,12 +162,14 @@ def _without_units(table: Table, model: Model) -> Table:
     """The table with the names of columns as they are without units in them.
 
     Raises:
-        InputError: a column has another unit than it must have.
+        InputError: a column has another unit than it must have, or points have two.
     """
+    shaped = {point + part for point in model.points for part in ("", IMAGINARY)}
     bare = {
         name: one
         for name, one in table.names.items()
-        if one in {*_UNITS, HINT, *_wide_columns([one], model)} and one not in table.frame.columns
+        if one in {*_UNITS, HINT, *shaped, *_wide_columns([one], model)}
+        and one not in table.frame.columns
     }
     frame = table.frame.rename(bare)
     wide = {} if FREQUENCY in frame.columns else _wide_columns(frame.columns, model)
@@ -166,6 +179,8 @@ def _without_units(table: Table, model: Model) -> Table:
             raise InputError(
                 f"the unit of {name!r} is {unit!r}", str(table.path), f"give it in {wanted}"
             )
+    of_shapes = [name for name in frame.columns if name in shaped]
+    one_unit(table, of_shapes, [units.get(name, "") for name in of_shapes])
     return replace(table, frame=frame, units=units)
 
 
@@ -185,6 +200,7 @@ def _wide(table: Table, model: Model, named: Mapping[str, str]) -> ModalRecord:
     if not len(rows):
         raise InputError("no mode was found in any window", str(table.path), "give one that was")
     time, start = _time(table)
+    check_lines(table, time)
     nothing = np.full(len(rows), np.nan)
     used = {TIME, DURATION, *chosen, *model.context}
     return ModalRecord(
@@ -201,7 +217,7 @@ def _wide(table: Table, model: Model, named: Mapping[str, str]) -> ModalRecord:
         contexts={name: table.numbers(name)[rows] for name in model.context if name in columns},
         left_out=tuple(name for name in columns if name not in used),
         sha256=table.sha256,
-    )
+    ).once()
 
 
 def as_real(shapes: np.ndarray) -> tuple[FloatArray, FloatArray]:

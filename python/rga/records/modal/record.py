@@ -30,6 +30,7 @@ class ModalRecord:
         contexts: context variables that the file has beside, float[entries] each.
         left_out: columns that say nothing of this.
         sha256: hash of the file.
+        repeated: entries that stood there more than once, and count once.
     """
 
     time: FloatArray
@@ -45,6 +46,7 @@ class ModalRecord:
     contexts: dict[str, FloatArray]
     left_out: tuple[str, ...]
     sha256: str
+    repeated: int = 0
 
     def __len__(self) -> int:
         return len(self.frequency)
@@ -73,6 +75,15 @@ class ModalRecord:
         hint = tuple(one for one, kept in zip(self.hint, chosen, strict=True) if kept)
         contexts = {name: column[chosen] for name, column in self.contexts.items()}
         return replace(self, **columns, hint=hint, contexts=contexts)
+
+    def once(self) -> "ModalRecord":
+        """The record without entries that repeat another: time, frequency, hint and shape."""
+        hint = np.unique(np.array(self.hint), return_inverse=True)[1].ravel()
+        shapes = np.nan_to_num(self.shapes, nan=np.inf)  # nothing measured is like itself
+        entries = np.column_stack([self.time, self.frequency, hint, shapes])
+        first = np.unique(entries, axis=0, return_index=True)[1]
+        kept = np.isin(np.arange(len(self)), first)
+        return replace(self.entries(kept), repeated=self.repeated + int((~kept).sum()))
 
     @property
     def windows(self) -> IntArray:

@@ -9,6 +9,10 @@ import scipy
 
 from rga.arrays import FloatArray, IntArray
 
+#: square of the length below which a shape is rounding
+LEAST_LENGTH = float(np.finfo(float).tiny)
+#: share of the longest shape below which a shape is rounding: the mode moves none of the points
+STILL = 1e-12
 #: what 1 - MAC of a mode and itself is, on average, where the model errs and sensors are noisy
 SHAPE_ERROR = 0.05
 #: pairings that are as good but for this are all carried: a factor of a hundred in probability
@@ -142,10 +146,11 @@ def parts_of_others(log_f: FloatArray, shapes: FloatArray, number: int) -> Float
     Returns:
         float[k, points], over the length of its own shape.
     """
-    length = float(np.linalg.norm(shapes[number]))
+    lengths = np.linalg.norm(shapes, axis=1)
+    length = max(float(lengths[number]), STILL * float(lengths.max()), 1e-300)
     size = couplings(log_f)[number]
     some = size > 0.0
-    return np.asarray(size[some, None] * shapes[some] / max(length, 1e-300))
+    return np.asarray(size[some, None] * shapes[some] / length)
 
 
 def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float:
@@ -200,7 +205,8 @@ def _unlike(measured: FloatArray, coupled: FloatArray, shapes: FloatArray) -> Fl
     # All by products of shapes, as `apart` and `without_parts` for each of them, with the modes
     # that are coupled to each alone.
     products, along = shapes @ shapes.T, shapes @ measured.T
-    squares = np.maximum(np.diag(products), 1e-300)
+    squares = np.diag(products)
+    squares = np.maximum(squares, max(STILL**2 * float(squares.max()), 1e-300))
     most = int((coupled > 0.0).sum(1).max(initial=0))
     near = np.argsort(-coupled, axis=1, kind="stable")[:, :most]
     sizes = np.take_along_axis(coupled, near, 1) / np.sqrt(squares)[:, None]
@@ -227,7 +233,7 @@ def apart(shape: FloatArray, own: FloatArray, parts: FloatArray) -> tuple[FloatA
         float[points], and float[k, points] for the length of this shape.
     """
     length = float(own @ own)
-    if length == 0.0:
+    if length < LEAST_LENGTH:
         return shape, parts
     size = float(np.linalg.norm(shape))
     off = shape - own * (float(own @ shape) / length)

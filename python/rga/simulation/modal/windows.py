@@ -53,6 +53,7 @@ def summary(
         own = named.mode == number
         frequency = record.frequency[own]
         middle = float(np.median(frequency)) if own.any() else None
+        alike = named.mac[own & np.isfinite(named.mac)]
         steps = np.diff(frequency[np.argsort(record.time[own])])
         lines.append(
             {
@@ -65,7 +66,7 @@ def summary(
                     if middle is not None and len(steps)
                     else None
                 ),
-                "MAC": float(np.median(named.mac[own])) if own.any() and len(look.shape) else None,
+                "MAC": float(np.median(alike)) if len(alike) else None,
             }
         )
     return pl.DataFrame(lines, infer_schema_length=None)

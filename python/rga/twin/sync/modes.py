@@ -12,6 +12,7 @@ from rga.model.schema import Model
 from rga.quantities import counted
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.simulator import ModalSimulator
+from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import named_modes
 from rga.twin.sync.context_courses import ContextCourses, outside, without_courses
 from rga.twin.sync.protocol import OutOfSync, listed
@@ -68,9 +69,25 @@ def watch_modes(
     Raises:
         InputError: the model expects no modes, the baseline is longer than the record or tells
             enough of no mode, or `arl0` is impossible.
+
+    >>> import rga
+    >>> from rga.model.schema import ExpectedMode
+    >>> mast = rga.ModelBuilder("mast").add_material("steel", "S355").add_section("tube", "HEB 200")
+    >>> mast = mast.add_node("foot").add_node("head", z="6 m").support("foot", "fixed")
+    >>> mast = mast.add_member("foot", "head", "tube", kind="frame").mass("head", "500 kg").build()
+    >>> modes = {"sway": ExpectedMode(near=1.588), "nod": ExpectedMode(near=2.678)}
+    >>> mast = mast.model_copy(update={"modes": modes})
+    >>> frequencies = np.tile([1.588, 2.678], (200, 1))  # [Hz], in each window
+    >>> frequencies *= 1 + 0.002 * np.random.default_rng(0).standard_normal((200, 2))
+    >>> frequencies[160:] *= 0.97
+    >>> found = [{"Fn": window} for window in frequencies]
+    >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(200)])
+    >>> watch_modes(mast, record, 100).alarm.words
+    'out of sync: a step since 96000.0: sway -2.9 %, nod -3.1 %'
     """
     simulator = ModalSimulator(model)
     named = named_modes(record, model, simulator.expected)
+    check_units(named, record, simulator.expected, model)
     windows = len(named.time)
     if not 0 < baseline < windows:
         raise InputError(

@@ -22,11 +22,11 @@ def test_what_can_hardly_be_meant_is_told() -> None:
     air = ContextVariable(unit="degC", range=(-20.0, 40.0))
     model = model.model_copy(update={"context": {"air": air}})
     again = record.entries(np.ones(len(record), dtype=bool))
-    time, frequency = again.time.copy(), again.frequency.copy()
-    time[1], frequency[1] = time[0], frequency[0]
+    time, frequency, shapes = again.time.copy(), again.frequency.copy(), again.shapes.copy()
+    time[1], frequency[1], shapes[1] = time[0], frequency[0], shapes[0]
     kelvin = np.where(record.windows < 2, 290.0, 10.0)
     odd = replace(
-        again, time=time, frequency=frequency, duration=np.full(len(time), 1e9),
+        again, time=time, frequency=frequency, shapes=shapes, duration=np.full(len(time), 1e9),
         contexts={"air": kelvin},
     )  # fmt: skip
     twice, long, far = odd_entries(model, odd)

@@ -145,3 +145,18 @@ def test_a_mode_that_leaves_the_points_still_is_none_that_moves_them() -> None:
         assert sorted(found.mac[0].round(9)) == [0.0, 1.0]
         unlike = unlike_computed(modes, np.zeros((2, 2)), shapes)
         assert sorted(unlike[0].round(9)) == [0.0, 1.0]
+
+
+def test_a_mode_that_moves_no_point_is_like_nothing_and_breaks_nothing() -> None:
+    """Its shape there is rounding: over the length of that, parts of others are without bound."""
+    shapes = np.array([[1e-170, 1e-171], [0.3, 0.9]])
+    log_f = np.log([2.0, 2.001])
+    with np.errstate(all="raise", under="ignore"):
+        parts = parts_of_others(log_f, shapes, 0)
+        unlike = unlike_mixed(np.array([0.3, 0.9]), shapes[0], parts)
+        table = unlike_computed(
+            [Expected(2.0, 0.1, np.arange(2), np.array([0.3, 0.9]))], couplings(log_f), shapes
+        )
+    assert np.isfinite(parts).all()
+    assert 0.0 <= unlike <= 1.0
+    assert np.isfinite(table).all()

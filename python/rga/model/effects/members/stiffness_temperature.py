@@ -16,6 +16,8 @@ from rga.model.schema import Model
 from rga.model.structure import Structure
 
 USUAL = Normal(0.0, 0.003)
+#: change of the stiffness within a kelvin beyond which it is a slip: of per cent for a share
+STEEPEST = 0.5
 
 
 class StiffnessTemperature(Effect):
@@ -52,6 +54,13 @@ class StiffnessTemperature(Effect):
     of: Literal["EA", "EI", "both"] = "EA"
 
     def check(self, model: Model) -> None:
+        for name in ("rate", "below"):
+            slope = getattr(self, name)
+            if isinstance(slope, int | float) and abs(slope) > STEEPEST:
+                raise ValueError(
+                    f"{name} is {slope:g} 1/K, by which the stiffness changes by "
+                    f"{100 * abs(slope):g} % within a kelvin: give a share, such as -0.02"
+                )
         if self.kink is None and "below" in self.model_fields_set:
             raise ValueError("below [1/K] holds below a kink: give kink [degC] too")
         several = [model.members[name] for one in listed(self.group) for name in model.groups[one]]
