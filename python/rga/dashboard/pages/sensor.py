@@ -46,6 +46,7 @@ def sensors_page(seen: SeenTwin) -> dict[str, Any]:
         "heading": heading(seen, now),
         "tab": "/sensors",
         "rows": farthest_first(rows),
+        "version": 0 if now is None else now.version,
     }
 
 
@@ -69,6 +70,7 @@ def sensor_page(seen: SeenTwin, name: str, query: Mapping[str, str]) -> dict[str
         "heading": heading(seen, now),
         "tab": "/sensors",
         "row": row,
+        "version": now.version,
         "charts": [],
         "spans_known": tuple(SPANS),
         "span": "",

@@ -7,7 +7,7 @@ from typing import Any
 from rga.dashboard.pages.times import span_words
 from rga.findings.phrases import kind_words
 from rga.operation.reading.twin_now import TwinNow
-from rga.quantities import number
+from rga.quantities import counted
 from rga.report.drawing.places import place_names
 from rga.twin.repository import Proposal
 from rga.twin.status import NEXT
@@ -73,7 +73,8 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> Tw
         words = f"The newest row is {span_words(silence)} old: its sources are silent."
         return TwinHealth("silent", "warn", "◇", 3, words)
     if now.stage in LEARNS:
-        words = f"{number(now.rows)} rows have come; {NEXT[now.stage]}."
+        come = f"{counted(now.rows, 'row')} {'has' if now.rows == 1 else 'have'} come"
+        words = f"{come}; {NEXT[now.stage]}."
         return TwinHealth("learning", "wait", "◌", 5, words)
     if lag > BEHIND:
         return TwinHealth("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")

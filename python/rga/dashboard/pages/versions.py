@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.in_force import BEHIND, InForce, in_force
+from rga.dashboard.pages.in_force import BEHIND, InForce, first_in_force, in_force
 from rga.dashboard.surroundings import SeenTwin
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.findings.phrases import effect_words
@@ -32,7 +32,8 @@ class VersionRow:
         effects: beyond the model as given, in words.
         added, removed: of these, beside the version before it in the table.
         gain: on held-out rows, with its interval, in words.
-        gap, level: while it was in force last.
+        gap, level: while it was in force last; of one that is so for no row yet, as it follows the
+            latest rows.
         in_force: whether it is now.
         sha256: of its model file.
     """
@@ -65,17 +66,19 @@ def versions_page(seen: SeenTwin) -> dict[str, Any]:
     if now is None or view is None or twin is None:
         return found
     last = 0.0 if now.time is None else seen.reading.elapsed(now.time) + BEHIND
-    stretches = in_force(view, last)
+    stretches, begun = in_force(view, last), first_in_force(view)
     rows: list[VersionRow] = []
     before: tuple[str, ...] = ()
     for one in view.versions():
         effects = tuple(effect_words(effect) for effect in json.loads(one.causes).values())
         own = [stretch for stretch in stretches if stretch.version == one.number]
         gap = _gap(seen.reading, own[-1]) if own else None
+        if not own and one.number == now.version:
+            gap = now.recent
         rows.append(
             VersionRow(
                 one.number,
-                moment(twin.station.start, own[0].begin) if own else None,
+                moment(twin.station.start, begun[one.number]) if one.number in begun else None,
                 effects,
                 tuple(words for words in effects if words not in before),
                 tuple(words for words in before if words not in effects),

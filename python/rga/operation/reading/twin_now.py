@@ -26,6 +26,8 @@ class SensorNow:
         noise: standard deviation of a row [its unit]; None: nothing tells it.
         gap: squared difference over the variance of the noise [-].
         recent: mean of the gap over the last rows, which tells more than one of them [-].
+
+    What is simulated, and both gaps, are by the version in force; None: it has not followed them.
     """
 
     measured: float | None
@@ -48,8 +50,8 @@ class TwinNow:
         causes: what that version has beyond the model as given, in words.
         out_of_sync: whether an alarm is being dealt with.
         undecided: the proposal that nobody has decided about.
-        gap: mean over the sensors of the last row [-].
-        recent: mean over the sensors and the last rows [-].
+        gap: mean over the sensors of the last row, by the version in force [-].
+        recent: mean over the sensors and the last rows, by the version in force [-].
         sensors: by name.
         contexts: mean and standard deviation of each, in its unit.
     """
@@ -77,15 +79,17 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
         noise: standard deviation of a row of each sensor [its unit]; NaN where nothing tells it.
     """
     row, standing = view.rows - 1, standing_of(view)
-    last, gaps = view.measured(max(0, row), row + 1), view.gaps(max(0, row), row + 1)
-    before = view.gaps(max(0, row + 1 - RECENT), row + 1, at_the_time=True)
+    last = view.measured(max(0, row), row + 1)
+    # What a version before has said of these rows would be read as said by the one in force.
+    followed = view.gaps(max(0, row + 1 - RECENT), row + 1, version=twin.version)
+    reached = len(followed.rows) > 0 and int(followed.rows[-1]) == row
     station = twin.station
     names = list(station.channels)
     none = np.full(len(names), np.nan)
     measured = last.readings[-1] if len(last.rows) else none
-    simulated = gaps.simulated[-1] if len(gaps.rows) else none
-    squares = gaps.gaps[-1] if len(gaps.rows) else none
-    recent = mean(before.gaps, axis=0) if len(before.rows) else none
+    simulated = followed.simulated[-1] if reached else none
+    squares = followed.gaps[-1] if reached else none
+    recent = mean(followed.gaps, axis=0) if len(followed.rows) else none
     sensors = {}
     for k, name in enumerate(names):
         own = noise.get(name, np.nan)

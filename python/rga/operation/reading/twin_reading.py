@@ -16,7 +16,14 @@ from rga.operation.reading.twin_now import TwinNow, twin_now
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.hardware.interface import LIVE
 from rga.twin.history import Event
-from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
+from rga.twin.repository import (
+    Identity,
+    Proposal,
+    Repository,
+    RunView,
+    StoredCommand,
+    StoredReadings,
+)
 from rga.twin.repository.database import FILE_NAME
 from rga.twin.repository.faults import NothingThere
 from rga.twin.restore import standing_of
@@ -38,6 +45,8 @@ class Series:
         measured, simulated, gap: over time [s since the first row]; the gap is a squared
             difference over the variance of the noise [-].
         inferred: contexts.
+
+    What is simulated and inferred, and the gap, are by the version that was in force then.
     """
 
     sensors: tuple[str, ...]
@@ -66,6 +75,11 @@ class TwinReading:
         self._file = None if repository else directory / FILE_NAME
         self._lock = RLock()
         self._repository: Repository | None = None
+        self._run: tuple[Identity, datetime] | None = None
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """Leave what was read so far."""
         self._twin: Twin | None = None
         self._steps = -1
         self._now: TwinNow | None = None
@@ -91,6 +105,11 @@ class TwinReading:
             view = self._view()
             if view is None:
                 return None
+            run = view.identity, view.begun_at
+            if run != self._run or view.steps < self._steps:
+                # Another run, or a copy of before, has taken the place of what was read.
+                self._begin_anew()
+                self._run = run
             if self._twin is None or view.steps != self._steps:
                 # All that is read of it is of one step, whatever is added at this moment; where it
                 # cannot be read, what was read before is not taken for it.
@@ -162,28 +181,20 @@ class TwinReading:
         Returns:
             None before the twin has begun.
         """
-        while not self._is_read(begin, end):
+        asked: int | None = None
+        while True:
+            with self._lock:
+                twin = self.twin
+                if twin is None:
+                    return None
+                view = self._begun().at_step(self._steps)
+                # Rows that come while it is read are not waited for: they may come on and on.
+                asked = view.rows if asked is None else asked
+                traces = self._traces(view, twin, asked, begin, end)
+                if traces is not None:
+                    channels, contexts = twin.station.channels, tuple(twin.given.context)
+                    return Series(channels, contexts, *(one.at_most(points) for one in traces))
             time.sleep(REST)
-        with self._lock:
-            twin = self.twin
-            if twin is None:
-                return None
-            view = self._begun().at_step(self._steps)
-            channels, contexts = twin.station.channels, tuple(twin.given.context)
-            first, last = view.row_at(begin), view.row_at(end) + 1
-            if last - first <= MOST_ROWS:
-                traces = self._as_they_are(view, twin, max(0, first), last, begin, end)
-            else:
-                _, measured, followed = self._grown(view, twin)
-                every = followed.between(begin, end)
-                n = len(channels)
-                traces = (
-                    measured.between(begin, end),
-                    _columns(every, slice(0, n)),
-                    _columns(every, slice(n, 2 * n)),
-                    _columns(every, slice(2 * n, None)),
-                )
-            return Series(channels, contexts, *(one.at_most(points) for one in traces))
 
     def elapsed(self, moment: datetime) -> float:
         """Seconds from the first row to a moment; 0 before the twin has begun."""
@@ -191,6 +202,28 @@ class TwinReading:
         if twin is None:
             return 0.0
         return (moment - datetime.fromisoformat(str(twin.station.start))).total_seconds()
+
+    def _traces(
+        self, view: RunView, twin: Twin, asked: int, begin: float, end: float
+    ) -> tuple[Trace, ...] | None:
+        """The traces of a series; None where more of a long past has to be read first.
+
+        Args:
+            asked: rows that have to be there, if the twin still has so many.
+        """
+        first, last = view.row_at(begin), view.row_at(end) + 1
+        if last - first <= MOST_ROWS:
+            return self._as_they_are(view, twin, max(0, first), last, begin, end)
+        is_all, measured, followed = self._grown(view, twin, asked)
+        if not is_all:
+            return None
+        every, n = followed.between(begin, end), len(twin.station.channels)
+        return (
+            measured.between(begin, end),
+            _columns(every, slice(0, n)),
+            _columns(every, slice(n, 2 * n)),
+            _columns(every, slice(2 * n, None)),
+        )
 
     def _as_they_are(
         self, view: RunView, twin: Twin, first: int, last: int, begin: float, end: float
@@ -208,37 +241,42 @@ class TwinReading:
         )
         return tuple(as_trace(moments[inside], one[inside]) for one in parts)
 
-    def _is_read(self, begin: float, end: float) -> bool:
-        """Whether all is read that a series takes; if not, some more is read.
+    def _grown(self, view: RunView, twin: Twin, asked: int) -> tuple[bool, Overview, Overview]:
+        """The past in blocks, with some rows more, and whether all that are asked for are there.
 
-        A long past is read once, and by nobody who does not look at it.
+        A long past is read once, and by nobody who does not look at it. Rows that are forgotten
+        later stay in it.
+
+        Raises:
+            InputError: the repository lacks rows.
         """
-        with self._lock:
-            twin = self.twin
-            if twin is None:
-                return True
-            view = self._begun().at_step(self._steps)
-            if view.row_at(end) + 1 - view.row_at(begin) <= MOST_ROWS:
-                return True
-            return self._grown(view, twin)[0]
-
-    def _grown(self, view: RunView, twin: Twin) -> tuple[bool, Overview, Overview]:
-        """The past in blocks, with some rows more, and whether these are all."""
         n, contexts = len(twin.station.channels), len(twin.given.context)
         if self._measured is None or self._followed is None:
             self._measured, self._followed = Overview(n), Overview(2 * n + contexts)
         rows, first = view.rows, self._measured.rows
         if first < rows:
-            seen = view.measured(first, min(rows, first + BATCH))
+            seen = self._whole(view, first, min(rows, first + BATCH))
             self._measured.append(seen.time, seen.readings.reshape(len(seen.time), n))
         standing = standing_of(view)
         known, first = standing.row if standing.calibrated else 0, self._followed.rows
         if first < known:
             last = min(known, first + BATCH)
-            moments = view.measured(first, last).time
+            moments = self._whole(view, first, last).time
             self._followed.append(moments, self._followed_rows(view, twin, first, last))
-        is_all = self._measured.rows >= rows and self._followed.rows >= known
+        reached = self._measured.rows >= min(asked, rows)
+        is_all = reached and self._followed.rows >= min(asked, known)
         return is_all, self._measured, self._followed
+
+    def _whole(self, view: RunView, first: int, last: int) -> StoredReadings:
+        """Rows that have to be there; without them a past would be read for ever."""
+        seen = view.measured(first, last)
+        if len(seen.rows) != last - first:
+            raise InputError(
+                f"rows {first} to {last - 1} are not all there",
+                f"repository of twin {self.name!r}",
+                "restore it from a copy",
+            )
+        return seen
 
     def _followed_rows(self, view: RunView, twin: Twin, first: int, last: int) -> FloatArray:
         """Simulated, gap and inferred contexts of rows, at the time, float[n, 2 channels + k]."""
