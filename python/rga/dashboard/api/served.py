@@ -60,6 +60,7 @@ def seen_twin(twin: TwinName, request: Request) -> SeenTwin:
 #: of a path that names a twin: that twin
 TheTwin = Annotated[SeenTwin, Depends(seen_twin)]
 
+
 def moment_in_utc(given: Any) -> datetime:
     """A time in UTC, as it is written in ISO 8601 with its zone; a number is none.
 

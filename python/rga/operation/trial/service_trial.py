@@ -24,6 +24,7 @@ from rga.operation.trial.listening import Heard, listened_to
 from rga.operation.trial.twin_files import TwinFiles, repository_findings
 from rga.operation.trial.what_came import (
     WhatCame,
+    channel_findings,
     clock_findings,
     silent_findings,
     source_findings,
@@ -65,7 +66,7 @@ def service_findings(configuration: Configuration, wait: float) -> list[Finding]
 def _heard(files: Sequence[TwinFiles], room: DiskRoom, wait: float) -> list[Finding]:
     """What is wrong with sources and with what they bring, and what a year of it takes."""
     sources = [
-        (one.settings.name, source, one.mappings[source_name(source)])
+        (one.settings.name, source, one.readers[source_name(source)].mapping)
         for one in files
         for source in one.settings.source
     ]
@@ -95,6 +96,7 @@ def _of_twin(
         where, reader = f"twin {twin.name!r}, {name}", files.readers[name]
         if one.error is not None:
             yield from refused(one.error)
+            yield from channel_findings(where, reader)
             continue
         yield from source_findings(where, source, one, brought, reader, wait)
         yield from clock_findings(where, source, brought, now)
