@@ -13,7 +13,7 @@ Topic = Literal[
     "alarm", "gap", "quality", "source", "service", "proposal",
     "silent", "stuck", "out of range", "conflict", "refused", "doubted",
     "down", "missing", "numbers", "clock", "fault",
-    "disk", "lag", "rows", "repository", "inbox", "parked", "worker", "account", "undelivered",
+    "disk", "lag", "rows", "repository", "inbox", "parked", "account", "undelivered",
 ]  # fmt: skip
 
 
