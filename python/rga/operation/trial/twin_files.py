@@ -46,7 +46,10 @@ class TwinFiles:
         model, run = load_model(settings.model), live_settings(settings.settings, settings.arl0)
         addressee_of(model, run, settings.name, settings.seed)
         sources = {source_name(one): one for one in settings.source}
-        return cls(settings, model, run, readers_of(settings.name, sources, model))
+        readers = readers_of(settings.name, sources, model)
+        for one in readers.values():
+            one.stated_names()  # of stated columns two may mean the same
+        return cls(settings, model, run, readers)
 
     def check_goes_on(self, directory: Path) -> None:
         """Whether the twin that was kept in a directory, if there is one, is this one.
