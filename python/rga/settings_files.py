@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from rga.bounded_files import bytes_of, fault_of, toml_of
 from rga.errors import InputError, SeveralMistakes
@@ -56,7 +57,7 @@ def validated(kind: type[T], content: dict[str, object], where: str, what: str) 
     try:
         return kind.model_validate(content)
     except ValidationError as error:
-        found = error.errors(include_url=False)
+        found = _without_those_that_follow(error.errors(include_url=False))
         told = list(dict.fromkeys(f"{_place(one['loc'], content)}{in_words(one)}" for one in found))
         if len(told) > 1:
             raise SeveralMistakes(told, where, "correct each of them") from None
@@ -64,6 +65,17 @@ def validated(kind: type[T], content: dict[str, object], where: str, what: str) 
         if found[0]["type"] in _OF_KEYS:
             remedy = _known_keys(kind, found[0]["loc"], what)
         raise InputError(told[0], where, remedy) from None
+
+
+def _without_those_that_follow(found: Sequence[ErrorDetails]) -> list[ErrorDetails]:
+    """Mistakes but for lists that are too short without their entries that are wrong."""
+    places = [one["loc"] for one in found]
+    return [
+        one
+        for one in found
+        if one["type"] != "too_short"
+        or not any(place[: len(one["loc"])] == one["loc"] != place for place in places)
+    ]
 
 
 #: mistakes that the names of the keys mend

@@ -20,15 +20,14 @@ from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.overtaken import Overtaken
 from rga.operation.rows.remarks import ChannelRemarks
-from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
 from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.arrivals import arrival_of, arrivals_of_lines
 from rga.operation.sources.clock import ClockWatch
 from rga.operation.sources.opened import opened
-from rga.operation.sources.settings import AnySource, source_name
+from rga.operation.sources.readers import readers_of
+from rga.operation.sources.settings import source_name
 from rga.operation.sources.source import DataSource, Placed
-from rga.records.mapping import RecordMapping, read_mapping
 from rga.settings_files import read_table, validated
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.settings import Settings
@@ -63,11 +62,7 @@ class ServedTwin:
         run = live_settings(settings.settings, settings.arl0)
         begun(model, directory, settings=run, name=settings.name, seed=settings.seed)
         self._sources = {source_name(one): one for one in settings.source}
-        self._mappings = {name: mapping_of(one) for name, one in self._sources.items()}
-        self._readers = {
-            name: Reader(name, model, self._mappings[name], one.stated)
-            for name, one in self._sources.items()
-        }
+        self._readers = readers_of(settings.name, self._sources, model)
         self._clocks = {
             name: ClockWatch(one.clock.rule, settings.rows.lateness)
             for name, one in self._sources.items()
@@ -106,7 +101,9 @@ class ServedTwin:
         """
         names = {*self.model.sensors, *self.model.context}
         found = {
-            name: opened(one, self._mappings[name], self.name, names, _TwinInlet(self, name))
+            name: opened(
+                one, self._readers[name].mapping, self.name, names, _TwinInlet(self, name)
+            )
             for name, one in self._sources.items()
         }
         return {name: source for name, source in found.items() if source is not None}
@@ -286,19 +283,3 @@ class _TwinInlet:
 
     def numbers(self) -> dict[str, Numbers]:
         return self.twin.numbers(self.source)
-
-
-def mapping_of(source: AnySource) -> RecordMapping:
-    """How what a source brings is read.
-
-    Raises:
-        InputError: its file cannot be read, or has a zero or files beside it.
-    """
-    mapping = RecordMapping() if source.mapping is None else read_mapping(source.mapping)
-    if mapping.zero is not None or mapping.beside:
-        raise InputError(
-            "a source that goes on has no zero of its own and no files beside it",
-            str(source.mapping),
-            "leave out zero and beside, and name each logger a source",
-        )
-    return mapping

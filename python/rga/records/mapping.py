@@ -1,6 +1,7 @@
 """The mapping of a logger's file to the channels of a model: `import.toml`."""
 
 import re
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -21,6 +22,8 @@ from rga.no_booleans import NO_BOOLEAN
 MAPPING_NAME = "import.toml"
 #: lines above the rows of a file, by what writes it
 HEAD_LINES = {"toa5": 4}
+#: formats of times that are no patterns
+TIMES = ("excel", "unix", "unix_ms", "unix_us", "unix_ns", "seconds")
 #: begins a reason that `rga import-record` gave, and that nobody has confirmed
 TO_CHECK = "TO CHECK"
 _Finite = Annotated[float, Field(allow_inf_nan=False), NO_BOOLEAN]
@@ -66,6 +69,34 @@ class TimeColumns(_Table):
     zone: str | None = None
     repeated_hour: Literal["guessed", "refused"] = "guessed"
 
+    @field_validator("format")
+    @classmethod
+    def _reads_what_it_writes(cls, format: str | None) -> str | None:
+        if format is None or format in TIMES:
+            return format
+        try:
+            if "%" not in format:
+                raise ValueError("it has no %")
+            moment = datetime(2026, 11, 23, tzinfo=UTC)
+            datetime.strptime(moment.strftime(format), format)
+        except (ValueError, re.error) as error:
+            known = ", ".join(TIMES)
+            raise ValueError(f"{format!r} is no pattern ({error}), nor one of {known}") from None
+        return format
+
+    @field_validator("zone")
+    @classmethod
+    def _exists(cls, zone: str | None) -> str | None:
+        if zone is not None:
+            # What reads zones is large, and nothing else of a mapping needs it.
+            from rga.records.times.zone import zone_of
+
+            try:
+                zone_of(zone, "zone")
+            except InputError as error:
+                raise ValueError(f"{error.what}: {error.remedy}") from None
+        return zone
+
     @model_validator(mode="after")
     def _some_time(self) -> "TimeColumns":
         if not self.columns and self.sampling_rate_hz is None:
@@ -89,6 +120,13 @@ class Channel(_Table):
     missing: list[str] = []
 
     _missing_as_words = field_validator("missing", mode="before")(_as_words)
+
+    @field_validator("column")
+    @classmethod
+    def _has_a_name(cls, column: str | None) -> str | None:
+        if column is not None and not column.strip():
+            raise ValueError("name the column, or leave it out where it is called as the channel")
+        return column
 
 
 class FileMapping(_Table):
@@ -165,6 +203,17 @@ class FileMapping(_Table):
             raise ValueError(f"decimal and {other} are the same sign")
         return self
 
+    @model_validator(mode="after")
+    def _every_column_is_of_one(self) -> "FileMapping":
+        named: dict[str, str] = {}
+        for name, one in self.channels.items():
+            if one.column in named:
+                both = f"the channels {named[one.column]!r} and {name!r} both name the column"
+                raise ValueError(f"{both} {one.column!r}: name another for one of them")
+            if one.column is not None:
+                named[one.column] = name
+        return self
+
     @property
     def left_out(self) -> dict[str, str]:
         """What is unused, but for what is still to be checked and what `channels` names since.
@@ -182,6 +231,16 @@ class FileMapping(_Table):
             for name, reason in self.unused.items()
             if not (name in claimed and reason.startswith(TO_CHECK))
         }
+
+    @property
+    def overruled(self) -> list[str]:
+        """Channels that `channels` reads and `unused` leaves out all the same.
+
+        >>> FileMapping(channels={"S1": {"column": "a"}}, unused={"S1": "broken"}).overruled
+        ['S1']
+        """
+        left_out = self.left_out
+        return [name for name, one in self.channels.items() if {name, one.column} & {*left_out}]
 
     @property
     def head_lines(self) -> int:
@@ -241,7 +300,7 @@ class RecordMapping(FileMapping):
     zero: Literal["lead-in"] | tuple[_Finite, _Finite] | None = None
     beside: list[Beside] = []
 
-    _folder: Path = PrivateAttr(default=Path())
+    _path: Path = PrivateAttr(default=Path(MAPPING_NAME))
 
     @model_validator(mode="after")
     def _zero_grows(self) -> "RecordMapping":
@@ -252,7 +311,12 @@ class RecordMapping(FileMapping):
     @property
     def folder(self) -> Path:
         """Where the files stand that it names: its own folder."""
-        return self._folder
+        return self._path.parent
+
+    @property
+    def path(self) -> Path:
+        """Its file, or what that is to be called where it was made by a program."""
+        return self._path
 
 
 def mapping_schema() -> dict[str, Any]:
@@ -301,7 +365,7 @@ def mapping_of(content: str, path: Path) -> RecordMapping:
         raise InputError(
             f"the mapping is no TOML: {fault_of(error)}", str(path), "mend the syntax"
         ) from None
-    mapping._folder = path.parent
+    mapping._path = path
     return mapping
 
 

@@ -81,6 +81,21 @@ def test_a_series_of_a_stretch_and_some_channels(client: TestClient, service: Se
     assert client.get(f"{EAST}/series", params={"points": 10**6}).status_code == 422
 
 
+@pytest.mark.parametrize("time", ["2026", "1", "1900000000", "9999-12-31T23:59:59-12:00"])
+def test_what_is_no_time_of_iso_8601_is_refused(client: TestClient, time: str) -> None:
+    for path, key in (("series", "from"), ("series", "to"), ("as-of", "time"), ("report", "from")):
+        answer = client.get(f"{EAST}/{path}", params={key: time})
+        assert answer.status_code == 422
+        assert answer.json()["detail"].startswith(f"query.{key}: ")
+
+
+@pytest.mark.parametrize("path", [EAST, f"{EAST}/series", f"{EAST}/stream", "/api/v1/twins"])
+def test_a_key_of_a_query_that_is_unknown_is_refused(client: TestClient, path: str) -> None:
+    answer = client.get(path, params={"form": "2026-11-23T01:00:00Z"})
+    assert answer.status_code == 422
+    assert "query.form: there is no such key" in answer.json()["detail"]
+
+
 def test_gap_contexts_and_latest(client: TestClient, service: Service) -> None:
     state = answer_of(client, EAST)["now"]
     gap = answer_of(client, f"{EAST}/gap")
@@ -119,6 +134,10 @@ def test_what_a_twin_lived_through(client: TestClient, service: Service) -> None
     messages = answer_of(client, f"{EAST}/messages", kind="Q5", last=1000)
     assert {one["kind"] for one in messages} == {"Q5"}
     assert answer_of(client, f"{EAST}/messages", kind="Q5", last=1) == messages[-1:]
+    times = {one["row"]: one["time"] for one in events}
+    of_events = [one for one in answer_of(client, f"{EAST}/messages") if one["row"] in times]
+    assert of_events
+    assert all(one["time"] == times[one["row"]].replace("+00:00", "Z") for one in of_events)
     account = answer_of(client, f"{EAST}/account")["http"]
     assert (account["received"], account["difference"]) == (120, 0)
 

@@ -93,6 +93,7 @@ def test_what_is_no_command_is_refused(client: TestClient, wrong: Any) -> None:
     assert isinstance(answer.json()["detail"], str)
 
 
+BEYOND = "9999-12-31T23:59:59-12:00"
 IN_ORDER = {"since": "2026-11-23T12:00:00Z", "until": "2026-11-23T10:00:00Z"}
 
 
@@ -104,12 +105,16 @@ IN_ORDER = {"since": "2026-11-23T12:00:00Z", "until": "2026-11-23T10:00:00Z"}
         ("west", {"kind": "rollback", "version": 1}, "no version 1"),
         ("east", {"kind": "accept", "proposal": 9}, "no proposal 9"),
         ("east", {"kind": "rollback", "version": 9}, "no version 9"),
+        ("east", {"kind": "accept", "version_seen": 9}, "no version 9"),
+        ("east", {"kind": "note", "why": "x", "version_seen": 9}, "no version 9"),
+        ("west", {"kind": "recalibrate", "version_seen": 1}, "there is none yet"),
         ("east", {"kind": "exclude", "sensor": "D77"}, "no sensor 'D77'"),
         ("east", {"kind": "exclude", "sensor": "D1"} | IN_ORDER, "ends before it begins"),
         ("west", {"kind": "exclude", "sensor": "D1"} | IN_ORDER, "ends before it begins"),
         ("east", {"kind": "exclude", "sensor": "D1", "until": IN_ORDER["until"]}, "ends before"),
         ("east", {"kind": "exclude", "sensor": "D1", "since": 5.0}, "with its zone"),
         ("east", {"kind": "exclude", "sensor": "D1", "since": "2026-11-23T12:00"}, "its zone"),
+        ("east", {"kind": "exclude", "sensor": "D1", "until": BEYOND}, "behind the year 9999"),
         ("east", {"kind": "note"}, "a note has words"),
         ("east", {"kind": "accept", "why": ""}, "say why"),
         ("east", {"kind": "accept", "why": "a\0b"}, "control character"),

@@ -64,6 +64,17 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
     check_a_stream_ends_with(running)
 
 
+def test_a_client_that_leaves_a_stream_is_no_error(running: Running) -> None:
+    asked = Request(f"{running.url}{EAST}/stream", headers={"Last-Event-ID": "0.0"})
+    for read in range(12):
+        with urlopen(asked, timeout=PATIENCE) as stream:
+            for _ in range(read % 4):
+                stream.readline()
+    time.sleep(1.0)
+    assert running.get("/healthz") == {"state": "up"}
+    assert "Traceback" not in (running.folder / "said.txt").read_text("utf-8")
+
+
 def check_a_stream_ends_with(running: Running) -> None:
     """A stream tells what has happened, and ends when the service does."""
     asked = Request(f"{running.url}{EAST}/stream", headers={"Last-Event-ID": "1.0"})

@@ -164,6 +164,28 @@ def test_stated_columns_are_looked_at_before_anything_comes(model: Model, tmp_pa
     assert code == 2
     assert "the channel 'D99' is not used: the model has no such channel" in said
     assert f"nobody sends {first!r}" in said
+    text = config.read_text("utf-8").replace('"D99"', f'"{others[0]} (mm)"')
+    config.write_text(text, "utf-8")
+    code, said = checked(tmp_path)
+    assert code == 2
+    assert f"both give {others[0]!r}" in said
+
+
+def test_variables_of_a_server_that_is_away_are_looked_at(model: Model, tmp_path: Path) -> None:
+    first, second, *others = channels(model)
+    nodes = ", ".join(f'"{one}" = "ns=2;s={one}"' for one in ("D99", second, *others))
+    server = f'kind = "opcua"\nurl = "opc.tcp://127.0.0.1:9"\nnodes = {{ {nodes} }}'
+    server += '\nmapping = "import.toml"'
+    config = tmp_path / "serve.toml"
+    config.write_text(config.read_text("utf-8").replace(FOLDER, server, 1), "utf-8")
+    (tmp_path / "import.toml").write_text(
+        f'[channels]\n{second} = {{}}\n[unused]\n{second} = "broken"\n', "utf-8"
+    )
+    code, said = checked(tmp_path)
+    assert code == 2
+    assert "the channel 'D99' is not used: the model has no such channel" in said
+    assert f"nobody sends {first!r}" in said
+    assert f"the channel {second!r} is left out: [unused] names it" in said
 
 
 @pytest.mark.parametrize(

@@ -71,3 +71,13 @@ def test_where_a_run_stands(case: Case, tmp_path: Path, rga: Callable[..., Any])
 def test_nothing_has_run_there(tmp_path: Path, rga: Callable[..., Any]) -> None:
     for name in ("status", "export"):
         assert rga(name, tmp_path).code == 2
+
+
+def test_a_service_that_runs_gives_no_record(tmp_path: Path, rga: Callable[..., Any]) -> None:
+    refused = rga("export", "http://127.0.0.1:9/east", "-o", tmp_path / "east.csv")
+    assert refused.code == 2
+    assert refused.err.count("\n") == 1
+    assert "a service that runs gives no record" in refused.err
+    assert "/api/v1/twins/east/series" in refused.err
+    assert "names no twin" in rga("export", "http://127.0.0.1:9").err
+    assert not list(tmp_path.iterdir())

@@ -100,6 +100,15 @@ def test_a_payload_of_which_nothing_is_used_is_refused(
     assert "none of its channels is used: D" in refused
 
 
+def test_every_reason_is_told_why_nothing_of_a_payload_is_used(model: Model) -> None:
+    names = '"D1 (kg)", "qq", "rr"'
+    text = f'{{"v": 1, "t0": "{STAMP}", "channels": [{names}], "values": [[1, 2, 3]]}}'
+    refused = came(reader_of(model), text).refused
+    assert refused is not None
+    assert "qq and 1 more (the model has no such channel)" in refused
+    assert "D1 (kg) (the unit 'kg'" in refused
+
+
 @pytest.mark.parametrize(
     "text", ['[{"bt":1795392000,"n":"spare","v":1.5}]', f"time,spare\n{STAMP},1.5\n"]
 )

@@ -53,7 +53,7 @@ lag = "2 h"
 quality = { off = "0 s" }
 [[notify]]
 url_file = "mail.secret"
-on = ["alarm", "proposal", "silent", "source", "disk"]
+on = ["alarm", "proposal", "silent", "source", "disk", "doubted", "refused"]
 at_most = "12 an hour"
 all_is_well = "07:00"
 """
@@ -141,10 +141,11 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ("opc.tcp://plant:4840", "http://plant", "no server"),
         ("opc.tcp://plant", "opc.tcp://a:b@plant", "password"),
         ('nodes = { D1 = "ns=2;s=D1" }', "nodes = {}", "nodes"),
+        ('"ns=2;s=D1"', '"zz"', "'zz' is no address of a variable"),
         ('"12 an hour"', '"12 a week"', "no rate"),
         ('"12 an hour"', '"0 an hour"', "no rate"),
         ('"silent"', '"mood"', "notify 1, on 3: "),
-        ('on = ["alarm", "proposal", "silent", "source", "disk"]', "on = []", "notify 1, on: "),
+        ('["alarm", "proposal", "silent", "source", "disk", "doubted", "refused"]', "[]", "on: "),
         ('"07:00"', '"07:00+01:00"', "it is in UTC"),
         ('"07:00"', '"noon"', "all_is_well"),
         ("disk = 0.2", "disk = 2", "alarms.disk"),
@@ -197,3 +198,11 @@ def test_every_mistake_is_told_with_its_place(tmp_path: Path) -> None:
     assert len(raised.value.mistakes) == 2
     assert "twin 'pratt-7', rws: there is no such key" in raised.value.mistakes
     assert any(one.startswith("twin 'pratt-7', source 2: kind is") for one in raised.value.mistakes)
+
+
+def test_a_wrong_entry_of_a_list_is_one_mistake(tmp_path: Path) -> None:
+    begin = SOUND.index('on = ["alarm"')
+    text = SOUND.replace(SOUND[begin : SOUND.index("\n", begin)], 'on = ["foo"]')
+    with pytest.raises(InputError, match="notify 1, on 1: ") as raised:
+        read_configuration(written(tmp_path, text))
+    assert not isinstance(raised.value, SeveralMistakes)

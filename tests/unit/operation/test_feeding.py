@@ -1,5 +1,6 @@
 """A logger that plays a record: what it sends, and what goes wrong as it was drawn."""
 
+import json
 from collections import Counter
 from collections.abc import Callable, Iterator
 from datetime import datetime
@@ -97,6 +98,15 @@ def test_a_mapping_beside_the_record_is_taken(tmp_path: Path, rga: Callable[...,
     np.testing.assert_array_equal([one.values.item() for one in packets], [np.nan, 2])
 
 
+def test_a_stream_that_no_packet_may_have_is_refused(file: Path, rga: Callable[..., Any]) -> None:
+    for stream in ("a b", "x" * 65, ""):
+        refused = rga("feed", file, "--to", file.parent, "--stream", stream)
+        assert refused.code == 2
+        words = " ".join(refused.err.replace("\u2502", " ").split())
+        assert "is no name of a stream" in words
+    assert [one.name for one in file.parent.iterdir()] == [file.name]
+
+
 class _Answering(BaseHTTPRequestHandler):
     """Answers what its server says, and 200 from the third call on."""
 
@@ -105,6 +115,9 @@ class _Answering(BaseHTTPRequestHandler):
         again = self.server.code == 503 and self.server.calls > 2  # type: ignore[attr-defined]
         self.send_response(200 if again else self.server.code)  # type: ignore[attr-defined]
         self.end_headers()
+        is_refused = self.server.calls <= self.server.refuses  # type: ignore[attr-defined]
+        told = ["none of its channels is used"] if is_refused else []
+        self.wfile.write(json.dumps({"refused": told}).encode())
 
     def log_message(self, format: str, *args: Any) -> None:
         pass
@@ -113,10 +126,23 @@ class _Answering(BaseHTTPRequestHandler):
 @pytest.fixture
 def answering() -> Iterator[HTTPServer]:
     with HTTPServer(("127.0.0.1", 0), _Answering) as server:
-        server.calls = 0  # type: ignore[attr-defined]
+        server.calls = server.refuses = 0  # type: ignore[attr-defined]
         Thread(target=server.serve_forever).start()
         yield server
         server.shutdown()
+
+
+@pytest.mark.parametrize(("refuses", "code"), [(0, 0), (1, 0), (4, 2)])
+def test_packets_that_are_refused_are_counted(
+    file: Path, answering: HTTPServer, rga: Callable[..., Any], refuses: int, code: int
+) -> None:
+    answering.code, answering.refuses = 200, refuses  # type: ignore[attr-defined]
+    place = f"http://127.0.0.1:{answering.server_port}/east"
+    done = rga("feed", file, "--to", place, "--rows", 60, "--json", "-")
+    assert done.code == code
+    assert json.loads(done.out)["refused"] == refuses
+    told = f"{refuses} of 4 packets were refused: none of its channels is used"
+    assert (told in done.err) == (refuses > 0)
 
 
 @pytest.mark.parametrize("code", [401, 403])

@@ -249,6 +249,21 @@ def test_a_number_is_read(payload: bytes, value: float, moment: int) -> None:
 
 
 @pytest.mark.parametrize(
+    ("more", "units"),
+    [
+        ('"unit": "cm"', {"D1": "cm"}),
+        ('"u": "cm"', {"D1": "cm"}),
+        ('"u": "cm", "unit": "cm"', {"D1": "cm"}),
+        ('"unit": null', {}),
+        ('"battery": 97', {}),
+    ],
+)
+def test_the_unit_of_a_number_is_that_of_its_channel(more: str, units: dict[str, str]) -> None:
+    payload = f'{{"value": 2, "time": 1795392000, {more}}}'.encode()
+    assert read_number(payload, "D1", NOW, None, None)[0].units == units
+
+
+@pytest.mark.parametrize(
     ("payload", "topic", "words"),
     [
         (b"on", "site/D1", "'on' is no number"),
@@ -260,6 +275,11 @@ def test_a_number_is_read(payload: bytes, value: float, moment: int) -> None:
         (b"1 2026-11-23T00:00:00", "site/D1", "no zone"),
         (b"1 99999999999999999999", "site/D1", "no time"),
         (b'{"v": 1}', "site/D1", "no number"),
+        (b"1,5", "site/D1", "'5' behind the number is no time"),
+        (b"1,570796326", "site/D1", "write numbers with a point"),
+        (b"1,5 2026-11-23T00:00:00Z", "site/D1", "cannot be read"),
+        (b'{"value": 1, "unit": 5}', "site/D1", "no number"),
+        (b'{"value": 1, "unit": "cm", "u": "mm"}', "site/D1", "it is in 'cm' and 'mm'"),
         (b"1" * 2000, "site/D1", "no number"),
         (b"\xff", "site/D1", "no number"),
         (b"1", "site/a/D1", "not of 'site/{channel}'"),

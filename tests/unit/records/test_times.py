@@ -169,7 +169,7 @@ def test_an_hour_that_does_not_exist_is_refused_with_its_line(tmp_path: Path) ->
     found = clock(tmp_path, "time", stamps, zone="+01:00")
     assert found.seconds.tolist() == [0, 3600, 7200]
     assert found.start == "2023-03-26T01:30:00+01:00"
-    with pytest.raises(InputError, match="no time zone 'Mars/Base'"):
+    with pytest.raises(ValueError, match="no time zone 'Mars/Base'"):
         clock(tmp_path, "time", stamps, zone="Mars/Base")
 
 

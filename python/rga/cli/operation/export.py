@@ -1,13 +1,19 @@
 """`rga export`: the rows of a run as a record."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.operation.replay import Place
+from rga.cli.operation.running_service import ServiceClient, is_service
 from rga.cli.options import file_to_write
 
+if TYPE_CHECKING:
+    from rga.errors import InputError
+
+Place = Annotated[
+    str, typer.Argument(metavar="DIR", help="Directory of a run, or a database by URL.")
+]
 RecordFile = Annotated[
     Path,
     typer.Option(
@@ -23,6 +29,8 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
     from rga.twin.repository.faults import Damaged
     from rga.twin.restore import standing_of, whole_record
 
+    if is_service(place):
+        raise _not_of_a_service(place)
     with Repository.open(place, read_only=True) as repository:
         view = repository.latest()
         record, damaged = whole_record(view)
@@ -42,4 +50,21 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
         typer.echo(f"warning: rows {which} are damaged and left out", err=True)
     typer.echo(
         f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."
+    )
+
+
+def _not_of_a_service(place: str) -> "InputError":
+    """A service shows rows as they are looked at: contexts that were measured are not among them.
+
+    Raises:
+        InputError: the address names no twin.
+    """
+    from rga.errors import InputError
+
+    name = ServiceClient(place).twin
+    return InputError(
+        "a service that runs gives no record",
+        place,
+        f"name the directory of the twin on its machine, [service] data and {name}, or the URL of "
+        f"its database; programs read /api/v1/twins/{name}/series",
     )

@@ -1,7 +1,8 @@
 """`rga feed`: a logger to try a service with."""
 
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from math import inf
 from pathlib import Path
@@ -13,6 +14,16 @@ from rga.cli.options import JsonTarget, decimal, whole
 
 if TYPE_CHECKING:
     from rga.operation.feeding.senders import Sender
+
+
+def _stream_name(text: str) -> str:
+    """A name that packets may have, before anything is sent."""
+    from rga.operation.packets.native import STREAM_PATTERN
+
+    if re.fullmatch(STREAM_PATTERN, text) is None:
+        raise typer.BadParameter(f"{text!r} is no name of a stream: take 64 of A-Z a-z 0-9 . _ -")
+    return text
+
 
 RecordFile = Annotated[Path, typer.Argument(metavar="RECORD", help="A logger's file.")]
 MappingFile = Annotated[
@@ -60,7 +71,10 @@ FaultsFile = Annotated[
 Stream = Annotated[
     str | None,
     typer.Option(
-        "--stream", metavar="NAME", help="Of the packets: the same goes on where it was stopped."
+        "--stream",
+        metavar="NAME",
+        parser=_stream_name,
+        help="Of the packets: the same goes on where it was stopped.",
     ),
 ]
 Source = Annotated[
@@ -87,13 +101,15 @@ def feed(
 ) -> None:
     """Play a record as a logger would send it, with faults that are drawn from a seed.
 
-    Packets are numbered, and sent again until the service has said that they are on its disk. A
-    token for the service is read from the environment: RGA_TOKEN.
+    Packets are numbered, and sent again until the service has said that they are on its disk. Where
+    it can use none of them, the command fails. A token for the service is read from the
+    environment: RGA_TOKEN.
     """
     from rga.cli.output import write_json
     from rga.cli.progress import shown_progress
     from rga.operation.feeding.faults import Faults, read_faults
     from rga.operation.feeding.player import play
+    from rga.operation.feeding.senders import HttpSender
     from rga.operation.feeding.sent_record import sent_record
     from rga.quantities import counted
     from rga.records.mapping import RecordMapping, find_mapping, read_mapping
@@ -107,13 +123,18 @@ def feed(
         counts = play(
             sent, sender, rows, speed or inf, drawn, lambda share: progress("sending", share)
         )
+    # What is sent by another way nobody answers.
+    refused = sender.refused if isinstance(sender, HttpSender) else {}
     if json is not None:
-        write_json({"stream": sent.stream, **counts}, json)
+        known = {"refused": len(refused)} if isinstance(sender, HttpSender) else {}
+        write_json({"stream": sent.stream, **counts, **known}, json)
     if json != "-":
         typer.echo(
             f"{counted(len(sent.times), 'row')} went out as stream {sent.stream}, "
             f"in {_in_words(counts)}."
         )
+    if refused:
+        _tell_refused([*refused.values()], counts["packet"] + counts["late"], to)
 
 
 def _in_words(counts: Mapping[str, int]) -> str:
@@ -130,6 +151,22 @@ def _in_words(counts: Mapping[str, int]) -> str:
     more = [f"{counted(double, 'packet')} sent twice"] if double else []
     more += [f"{counted(garbage, 'payload')} of garbage"] if garbage else []
     return f"{words}, and {' and '.join(more)} besides" if more else words
+
+
+def _tell_refused(reasons: Sequence[str], packets: int, place: str) -> None:
+    """Say how many packets a service could not use, and why.
+
+    Raises:
+        InputError: it could use none.
+    """
+    from rga.errors import InputError
+
+    why, others = reasons[0], len(set(reasons)) - 1
+    more = f", and for {others} other reasons" if others else ""
+    what = f"{len(reasons)} of {packets} packets were refused: {why}{more}"
+    if len(reasons) == packets:
+        raise InputError(what, place, "mend what it says; the packets are kept aside")
+    _told(f"warning: {what}")
 
 
 def _told(words: str) -> None:

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchem
 from rga.dashboard.access.may import may, may_see_some
 from rga.dashboard.access.roles import Right, Who
 from rga.dashboard.alarm_desk import alarms_of
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.past import LARGEST
 from rga.dashboard.api.served import (
     OF_A_TWIN,
@@ -29,7 +30,7 @@ from rga.twin.repository.faults import RepositoryFault
 
 #: alarms of an answer that are closed
 MOST_CLOSED = 1000
-router = APIRouter(prefix=PREFIX, tags=["alarms"])
+router = APIRouter(prefix=PREFIX, tags=["alarms"], route_class=KnownQueryRoute)
 Closed = Annotated[
     int, Query(ge=0, le=MOST_CLOSED, description="How many of the latest closed ones besides.")
 ]

@@ -11,6 +11,7 @@ from starlette.responses import Response
 
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.past import LARGEST
 from rga.dashboard.api.possible import about, impossible, unreadable
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
@@ -21,7 +22,7 @@ from rga.twin.restore import standing_of
 
 #: what the service fills in itself
 _FILLED = ("who", "given_at")
-router = APIRouter(prefix=PREFIX, tags=["commands"])
+router = APIRouter(prefix=PREFIX, tags=["commands"], route_class=KnownQueryRoute)
 
 
 def _schema() -> dict[str, Any]:

@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.bounds import IntakeRoom, RateLimit
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
 from rga.errors import InputError
 from rga.operation.packets.formats import TYPES, format_of_type
@@ -28,7 +29,7 @@ CONTENT_TYPES = (
     *TYPES,
     "application/x-www-form-urlencoded",
 )
-router = APIRouter(prefix=PREFIX, tags=["packets"])
+router = APIRouter(prefix=PREFIX, tags=["packets"], route_class=KnownQueryRoute)
 _BODY = {
     "requestBody": {
         "required": True,

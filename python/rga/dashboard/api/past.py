@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, HTTPException, Path, Query
 from starlette.responses import Response
 
 from rga.dashboard.access.may import may
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin
 from rga.dashboard.surroundings import SeenTwin
@@ -24,7 +25,11 @@ MOST_ENTRIES = 1000
 #: a number that a database holds
 LARGEST = 2**53
 router = APIRouter(
-    prefix=PREFIX, tags=["past"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))]
+    prefix=PREFIX,
+    tags=["past"],
+    route_class=KnownQueryRoute,
+    responses=OF_A_TWIN,
+    dependencies=[Depends(may("viewer"))],
 )
 Last = Annotated[int, Query(ge=1, le=MOST_ENTRIES, description="How many of the latest entries.")]
 
@@ -183,15 +188,18 @@ def messages(
     last: Last = 100,
 ) -> list[MessageAnswer]:
     """The log of queries and responses, the oldest first."""
+    view = _view(seen)
+    found = view.messages(kind, last)
+    # Messages themselves have no time: that of their rows stands with the rows.
+    rows = view.measured_at([one.row for one in found])
+    start = begun_twin(seen).station.start
+    times = {
+        row: moment(start, time)
+        for row, time in zip(rows.rows.tolist(), rows.time.tolist(), strict=True)
+    }
     return [
-        MessageAnswer(
-            one.kind,
-            one.row,
-            None if one.time is None else datetime.fromisoformat(str(one.time)),
-            one.body,
-            one.written_at,
-        )
-        for one in _view(seen).messages(kind, last)
+        MessageAnswer(one.kind, one.row, times.get(one.row), one.body, one.written_at)
+        for one in found
     ]
 
 

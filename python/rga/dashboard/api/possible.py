@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
+from rga.dashboard.api.served import moment_in_utc
 from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import TwinNow
 from rga.operation.settings_types import is_readable
@@ -49,12 +50,13 @@ def impossible(command: AnyCommand, seen: SeenTwin, now: TwinNow | None) -> str 
             return f"nothing is proposed that could be {command.kind}ed"
         if command.proposal is not None and command.proposal > last:
             return f"there is no proposal {command.proposal}: the last is {last}"
-    if isinstance(command, Rollback):
+    named = [command.version_seen, command.version if isinstance(command, Rollback) else None]
+    if any(one is not None for one in named):
         view = seen.reading.view()
         known = [] if view is None else [one.number for one in view.versions()]
-        if command.version not in known:
+        if lacking := [one for one in named if one is not None and one not in known]:
             told = ", ".join(map(str, known)) or "none yet"
-            return f"there is no version {command.version}: there is {told}"
+            return f"there is no version {lacking[0]}: there is {told}"
     if isinstance(command, Note) and not command.why:
         return "a note has words: write them as why"
     if isinstance(command, Exclude):
@@ -71,10 +73,10 @@ def _impossible_exclusion(command: Exclude, seen: SeenTwin, now: TwinNow | None)
     }
     for name, moment in (("since", command.since), ("until", command.until)):
         if moment is not None:
-            read = datetime.fromisoformat(moment) if isinstance(moment, str) else None
-            if read is None or read.tzinfo is None:
-                return f"{name}: give a time with its zone, such as 2026-11-23T12:00:00Z"
-            times[name] = read
+            try:
+                times[name] = moment_in_utc(moment)
+            except ValueError as error:
+                return f"{name}: {error}"
     since, until = times["since"], times["until"]
     if since is not None and until is not None and until <= since:
         return "until: it ends before it begins"

@@ -7,6 +7,7 @@ import numpy as np
 from fastapi import APIRouter, Depends, HTTPException
 
 from rga.dashboard.access.may import may
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, begun
 from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import moment
@@ -16,7 +17,11 @@ from rga.twin.twin import Twin
 #: rows in which the newest reading of a sensor is looked for
 LOOKED_BACK = 1000
 router = APIRouter(
-    prefix=PREFIX, tags=["readings"], responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))]
+    prefix=PREFIX,
+    tags=["readings"],
+    route_class=KnownQueryRoute,
+    responses=OF_A_TWIN,
+    dependencies=[Depends(may("viewer"))],
 )
 
 

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, HTTPException, Query, Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from rga.dashboard.access.may import may
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.reports import Reports, Wanted
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, Moment, TheTwin, answering
@@ -23,7 +24,7 @@ POLICY = (
     "sandbox allow-scripts allow-downloads; default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline'; img-src data:; font-src data:; frame-ancestors 'none'"
 )
-router = APIRouter(prefix=PREFIX, tags=["report"])
+router = APIRouter(prefix=PREFIX, tags=["report"], route_class=KnownQueryRoute)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from fastapi import APIRouter, Depends, HTTPException, Query
 
 from rga.dashboard.access.may import may
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, Moment, TheTwin
 from rga.operation.reading.overview import Floats, Trace
@@ -15,7 +16,7 @@ from rga.operation.reading.twin_now import moment
 
 #: points of an answer, and numbers of all its columns
 MOST_POINTS, MOST_NUMBERS = 5_000, 500_000
-router = APIRouter(prefix=PREFIX, tags=["readings"])
+router = APIRouter(prefix=PREFIX, tags=["readings"], route_class=KnownQueryRoute)
 Numbers = list[float | None]
 
 

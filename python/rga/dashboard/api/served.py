@@ -1,10 +1,11 @@
 """What paths of the API have in common: the twin that they name, and what they answer otherwise."""
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Request
-from pydantic import AwareDatetime
+from pydantic import AwareDatetime, BeforeValidator
 from starlette.requests import HTTPConnection
 
 from rga.dashboard.surroundings import SeenTwin, Surroundings
@@ -58,8 +59,28 @@ def seen_twin(twin: TwinName, request: Request) -> SeenTwin:
 
 #: of a path that names a twin: that twin
 TheTwin = Annotated[SeenTwin, Depends(seen_twin)]
+
+
+def moment_in_utc(given: Any) -> datetime:
+    """A time in UTC, as it is written in ISO 8601 with its zone; a number is none.
+
+    Raises:
+        ValueError: it is none, has no zone, or lies in no year of UTC.
+    """
+    try:
+        read = datetime.fromisoformat(given)
+    except (TypeError, ValueError):
+        read = None
+    if read is None or read.tzinfo is None:
+        raise ValueError("give a time with its zone, such as 2026-11-23T12:00:00Z")
+    try:
+        return read.astimezone(UTC)
+    except OverflowError:
+        raise ValueError("in UTC it lies before the year 1, or behind the year 9999") from None
+
+
 #: a time with its zone
-Moment = AwareDatetime
+Moment = Annotated[AwareDatetime, BeforeValidator(moment_in_utc)]
 
 
 def begun(seen: SeenTwin) -> TwinNow:

@@ -4,23 +4,33 @@ import asyncio
 from collections.abc import AsyncIterator
 from typing import Annotated
 
+from anyio import BrokenResourceError
 from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.following import FollowedTwin, StreamPlace
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.served import PREFIX, TheTwin, told_as_json
 
 #: how long a stream rests before it asks for what is new [s]
 REST = 0.1
-router = APIRouter(prefix=PREFIX, tags=["stream"])
+router = APIRouter(prefix=PREFIX, tags=["stream"], route_class=KnownQueryRoute)
+
+
+async def _ends_as_one_leaves() -> AsyncIterator[None]:
+    """A dependency of a stream: whoever leaves while something is sent to them ends it."""
+    try:
+        yield
+    except* BrokenResourceError:
+        pass  # what is sent has nowhere to go any more, and nothing else has gone wrong
 
 
 @router.get(
     "/twins/{twin}/stream",
     response_class=EventSourceResponse,
     responses=told_as_json(400, 401, 403, 404, 422, 503),
-    dependencies=[Depends(may("viewer"))],
+    dependencies=[Depends(may("viewer")), Depends(_ends_as_one_leaves)],
 )
 async def stream(
     seen: TheTwin,

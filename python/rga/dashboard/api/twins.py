@@ -8,6 +8,7 @@ from fastapi import APIRouter, Depends
 
 from rga.dashboard.access.may import may, may_see_some
 from rga.dashboard.access.roles import Who
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.served import (
     OF_A_TWIN,
     PREFIX,
@@ -20,7 +21,7 @@ from rga.dashboard.api.served import (
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.reading.twin_now import TwinNow
 
-router = APIRouter(prefix=PREFIX, tags=["twins"])
+router = APIRouter(prefix=PREFIX, tags=["twins"], route_class=KnownQueryRoute)
 
 
 @dataclass(frozen=True)

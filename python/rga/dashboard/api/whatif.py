@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, HTTPException
 from pydantic import BaseModel, ConfigDict, Field
 
 from rga.dashboard.access.may import may
+from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
 from rga.simulation.whatif import WhatIf, effect_of
@@ -16,7 +17,7 @@ from rga.simulation.whatif import WhatIf, effect_of
 #: answers that are worked out at once; who asks beyond that asks again
 MOST = 2
 _ROOM = Semaphore(MOST)
-router = APIRouter(prefix=PREFIX, tags=["what if"])
+router = APIRouter(prefix=PREFIX, tags=["what if"], route_class=KnownQueryRoute)
 
 
 class WhatIfQuestion(BaseModel):

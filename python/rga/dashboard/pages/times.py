@@ -54,12 +54,14 @@ def given_moment(text: str) -> datetime | None:
 
     >>> given_moment("2026-01-01T05:30").isoformat(), given_moment("soon")
     ('2026-01-01T05:30:00+00:00', None)
+    >>> given_moment("9999-12-31T23:59:59-12:00") is None
+    True
     """
     try:
         found = datetime.fromisoformat(text)
-    except ValueError:
+        return found.replace(tzinfo=UTC) if found.tzinfo is None else found.astimezone(UTC)
+    except (ValueError, OverflowError):
         return None
-    return found.replace(tzinfo=UTC) if found.tzinfo is None else found.astimezone(UTC)
 
 
 def of_event(time: str | float) -> datetime:

@@ -75,13 +75,17 @@ class HttpSender:
 
     Raises:
         InputError: the address names no host.
+
+    Attributes:
+        refused: packets that the service keeps aside, with the reason; garbage is meant to be.
     """
 
     def __init__(
         self, url: str, token: str | None = None, told: Callable[[str], None] = _nothing_told
     ) -> None:
         parts, self._place, self._silence = _parts_of(url), url, _Silence(told)
-        self._told, self._refused = told, False
+        self._told = told
+        self.refused: dict[Number, str] = {}
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
         self._headers = {"Content-Type": "application/octet-stream"}
@@ -123,12 +127,12 @@ class HttpSender:
         """Nothing is on its way."""
 
     def _hear(self, answer: bytes, number: Number | None) -> None:
-        """Tell the first time that a packet was refused; garbage is meant to be."""
-        if number is None or self._refused:
+        """Remember that a packet was refused, and tell it the first time."""
+        if number is None or not (refused := json.loads(answer)["refused"]):
             return
-        if refused := json.loads(answer)["refused"]:
-            self._refused = True
+        if not self.refused:
             self._told(f"the service keeps packet {number.sequence} aside: {refused[0]}")
+        self.refused[number] = refused[0]
 
 
 def _parts_of(url: str) -> SplitResult:

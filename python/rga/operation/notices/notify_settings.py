@@ -11,7 +11,9 @@ from rga.operation.settings_types import Rate, SettingsTable
 #: classes of alarms, and causes within them; `alarm` is the alarm of the twin's monitor
 Topic = Literal[
     "alarm", "gap", "quality", "source", "service", "proposal",
-    "silent", "stuck", "out of range", "conflict", "down", "missing", "clock", "disk", "lag",
+    "silent", "stuck", "out of range", "conflict", "refused", "doubted",
+    "down", "missing", "numbers", "clock", "fault",
+    "disk", "lag", "rows", "repository", "inbox", "parked", "account", "undelivered",
 ]  # fmt: skip
 
 

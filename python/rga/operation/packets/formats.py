@@ -65,7 +65,7 @@ class StatedFormat:
     Attributes:
         format: of all of them; None: each is looked at.
         pattern: of topics that name a channel.
-        columns: of rows that are sent without their names.
+        columns: of rows that are sent without their names, or channels that a server is asked for.
         zone: of time stamps that have none.
     """
 

@@ -23,6 +23,8 @@ from rga.operation.packets.packet import (
 )
 from rga.records.record import LARGEST
 
+#: name of a stream
+STREAM_PATTERN = r"^[A-Za-z0-9._-]{1,64}$"
 _Name = Annotated[str, Meta(min_length=1, max_length=200)]
 
 
@@ -47,7 +49,7 @@ class NativePacket(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     values: bytes | Annotated[list[list[float | None]], Meta(min_length=1)]
     dt: Annotated[float, Meta(gt=0, le=LONGEST)] | None = None
     t: list[float] | None = None
-    stream: Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{1,64}$")] | None = None
+    stream: Annotated[str, Meta(pattern=STREAM_PATTERN)] | None = None
     seq: Annotated[int, Meta(ge=0, lt=2**53)] | None = None
 
 

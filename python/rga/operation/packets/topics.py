@@ -13,6 +13,8 @@ from rga.operation.packets.readings import SensorReading, packets_of
 
 #: bytes of a number with its time
 _MOST = 1000
+#: counts of seconds from this one on, in 2001, have ten digits
+_LEAST = 10**9
 _CHANNEL = "{channel}"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
@@ -56,7 +58,7 @@ def read_number(
 
     Args:
         payload: `1.5`, `1.5 2026-11-23T00:00:00Z` (or `,` or `;` between them; or a time that is
-            counted from 1970), or JSON: `{"value": 1.5, "time": ...}`.
+            counted from 1970), or JSON: `{"value": 1.5, "time": ..., "unit": "mm"}`.
         where: the topic.
         arrived: its time where it states none, microseconds since 1970 (UTC).
         pattern: of the topic; None: all of the topic is the name.
@@ -69,38 +71,56 @@ def read_number(
     array([1795392000000000])
     """
     channel = where if pattern is None else pattern.channel_of(where)
-    value, time = _parts(payload, where)
+    value, time, unit = _parts(payload, where)
     moment = arrived
     if isinstance(time, str):
-        if _NUMBER.fullmatch(time) is None:
-            moment = moment_of_stamp(time, zone, where)
-        else:
-            moment = moment_of_number(float(time) if "." in time else int(float(time)), where)
+        moment = _moment_of_text(time, zone, where)
     elif time is not None:
         moment = moment_of_number(time, where)
-    return packets_of([SensorReading(channel, moment, value)], {}, where, timed=time is not None)
+    reading = SensorReading(channel, moment, value)
+    return packets_of([reading], {channel: unit or ""}, where, timed=time is not None)
 
 
-def _parts(payload: bytes, where: str) -> tuple[float, Any]:
-    """A number, and its time if it has one."""
+def _moment_of_text(time: str, zone: tzinfo | None, where: str) -> int:
+    """Microseconds since 1970 (UTC) of a time that stands behind a number."""
+    if _NUMBER.fullmatch(time) is None:
+        return moment_of_stamp(time, zone, where)
+    if float(time) < _LEAST:
+        # What stands behind a comma may as well be the rest of the number.
+        words = f"{time!r} behind the number is no time that is counted from 1970"
+        raise InputError(words, where, "write numbers with a point, and times with their date")
+    return moment_of_number(float(time) if "." in time else int(float(time)), where)
+
+
+def _parts(payload: bytes, where: str) -> tuple[float, Any, str | None]:
+    """A number, and its time and unit if it has them."""
     try:
         if len(payload) > _MOST:
             raise ValueError
         text = payload.decode().strip()
         if text.startswith("{"):
             read = msgspec.json.decode(text, type=_Written)
-            return (float("nan") if read.value is None else read.value), read.time
-        number, *time = re.split(r"\s*[,;]\s*|\s+", text, maxsplit=1)
-        if _NUMBER.fullmatch(number) is None:
-            raise ValueError
-        return float(number), time[0] if time else None
+        else:
+            number, *time = re.split(r"\s*[,;]\s*|\s+", text, maxsplit=1)
+            if _NUMBER.fullmatch(number) is None:
+                raise ValueError
+            return float(number), time[0] if time else None, None
     except (ValueError, msgspec.DecodeError, RecursionError):
         shown = payload[:40].decode("utf-8", "replace")
         raise InputError(
             f"{shown!r} is no number", where, "send a number, or a number and its time"
         ) from None
+    units = {one for one in (read.unit, read.u) if one}
+    if len(units) > 1:
+        told = " and ".join(map(repr, sorted(units)))
+        raise InputError(f"it is in {told}", where, "state its unit once")
+    return float("nan") if read.value is None else read.value, read.time, next(iter(units), None)
 
 
 class _Written(msgspec.Struct):
+    """A number in JSON; other keys, such as the charge of a battery, say nothing of it."""
+
     value: float | None
     time: int | float | str | None = None
+    unit: str | None = None
+    u: str | None = None

@@ -23,6 +23,8 @@ from rga.records.mapping import FileMapping, TimeColumns
 if TYPE_CHECKING:
     from rga.operation.rows.tables import Columns, TableReader
 
+#: reasons of which each is told
+MOST_REASONS = 5
 #: of rows whose time is that of their arrival
 _PLAIN = TimeColumns()
 
@@ -37,12 +39,14 @@ class Reader:
         model: names the sensors and contexts and states their units.
         mapping: what the names, units and signs of the logger mean.
         stated: of the format of its payloads.
+        place: of the mapping, for an error.
 
     Raises:
         InputError: the mapping speaks of channels or units that the model does not have, or of no
             zone that is known.
 
     Attributes:
+        mapping: as it was given.
         left_out: names that the mapping leaves out.
         remarks: what is to be known of its channels.
     """
@@ -53,12 +57,14 @@ class Reader:
         model: Model,
         mapping: FileMapping,
         stated: StatedFormat | None = None,
+        place: str = "import.toml",
     ) -> None:
-        check_channels(mapping, model, f"import.toml of source {source!r}")
+        check_channels(mapping, model, place)
+        self.mapping = mapping
         self.left_out = frozenset(mapping.left_out)
         self.remarks = ChannelRemarks()
         self._where, self._model = Path(source), model
-        self._stated = replace(stated or StatedFormat(), zone=_zone(mapping, source))
+        self._stated = replace(stated or StatedFormat(), zone=_zone(mapping, place))
         time = mapping.time.model_copy(update={"repeated_hour": "refused"})
         more = {"empty": "missing", "unknown": "unused", "time": time}
         self._mapping = mapping.model_copy(update=more)
@@ -97,7 +103,7 @@ class Reader:
         return packets
 
     def stated_names(self) -> set[str]:
-        """Sensors and contexts of rows whose columns are stated; none where they are not."""
+        """Sensors and contexts of columns that are stated; none where they are not."""
         columns = set(self._stated.columns) - set(self._mapping.time.columns)
         if not columns:
             return set()
@@ -178,20 +184,27 @@ def check_samples(samples: SensorSamples, where: str) -> None:
 
 def _check_none_refused(refused: Mapping[str, str], where: str) -> None:
     if refused:
-        name, why = next(iter(refused.items()))
-        more = f" and {len(refused) - 1} more" if len(refused) > 1 else ""
+        alike: dict[str, list[str]] = {}
+        for name, why in refused.items():
+            alike.setdefault(why, []).append(name)
+        told = [f"{_first_of(names)} ({why})" for why, names in alike.items()]
+        more = [f"and {len(told) - MOST_REASONS} reasons more"] if len(told) > MOST_REASONS else []
         raise InputError(
-            f"none of its channels is used: {name}{more} ({why})",
+            f"none of its channels is used: {', '.join([*told[:MOST_REASONS], *more])}",
             where,
             "name them under [channels] or [unused] in import.toml",
         )
+
+
+def _first_of(names: Sequence[str]) -> str:
+    return f"{names[0]} and {len(names) - 1} more" if len(names) > 1 else names[0]
 
 
 def _columns(packet: SensorPacket) -> "Columns":
     return tuple((name, packet.units.get(name, "")) for name in packet.channels)
 
 
-def _zone(mapping: FileMapping, source: str) -> tzinfo | None:
+def _zone(mapping: FileMapping, place: str) -> tzinfo | None:
     """The zone that a mapping states.
 
     Raises:
@@ -201,4 +214,4 @@ def _zone(mapping: FileMapping, source: str) -> tzinfo | None:
         return None
     from rga.records.times.zone import zone_of
 
-    return zone_of(mapping.time.zone, source)
+    return zone_of(mapping.time.zone, place)

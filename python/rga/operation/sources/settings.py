@@ -1,5 +1,6 @@
 """Where data of a twin comes from, as the file of a service says it."""
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 from urllib.parse import urlsplit
@@ -12,6 +13,9 @@ from rga.operation.packets.formats import PayloadFormat, StatedFormat
 from rga.operation.packets.topics import TopicPattern
 from rga.operation.settings_types import Duration, Name, SettingsTable
 from rga.operation.sources.clock import ClockRule
+
+#: address of a variable: numbers of namespace and server, and a number, name, GUID or bytes
+_NODE = re.compile(r"(?:(?:ns|srv)=\d+;|nsu=[^;]+;)*(?:i=\d+|[sgb]=.+)", re.DOTALL)
 
 
 class ClockSettings(SettingsTable):
@@ -211,6 +215,18 @@ class OpcUaSource(SourceSettings):
     nodes: Annotated[dict[str, str], Field(min_length=1)]
     credentials: Path | None = None
     poll: Duration = 1.0
+
+    @property
+    def stated(self) -> StatedFormat:
+        """What is known of the payloads before they come: their channels too."""
+        return StatedFormat("packet", columns=tuple(self.nodes))
+
+    @field_validator("nodes")
+    @classmethod
+    def _addresses(cls, nodes: dict[str, str]) -> dict[str, str]:
+        if wrong := next((one for one in nodes.values() if not _NODE.fullmatch(one)), None):
+            raise ValueError(f"{wrong!r} is no address of a variable: write 'ns=2;s=D1'")
+        return nodes
 
     @model_validator(mode="after")
     def _server(self) -> "OpcUaSource":

@@ -24,6 +24,7 @@ from rga.operation.trial.listening import Heard, listened_to
 from rga.operation.trial.twin_files import TwinFiles, repository_findings
 from rga.operation.trial.what_came import (
     WhatCame,
+    channel_findings,
     clock_findings,
     silent_findings,
     source_findings,
@@ -69,7 +70,7 @@ def _heard(files: Sequence[TwinFiles], room: DiskRoom, wait: float) -> list[Find
             one.settings.name,
             {*one.model.sensors, *one.model.context},
             source,
-            one.mappings[source_name(source)],
+            one.readers[source_name(source)].mapping,
         )
         for one in files
         for source in one.settings.source
@@ -100,6 +101,7 @@ def _of_twin(
         where, reader = f"twin {twin.name!r}, {name}", files.readers[name]
         if one.error is not None:
             yield from refused(one.error)
+            yield from channel_findings(where, reader)
             continue
         yield from source_findings(where, source, one, brought, reader, wait)
         yield from clock_findings(where, source, brought, now)

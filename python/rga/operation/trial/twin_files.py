@@ -11,9 +11,9 @@ from rga.jobs.begin import addressee_of, check_same
 from rga.model import Model, load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.rows.samples import Reader
-from rga.operation.served_twin import live_settings, mapping_of
+from rga.operation.served_twin import live_settings
+from rga.operation.sources.readers import readers_of
 from rga.operation.sources.settings import source_name
-from rga.records.mapping import RecordMapping
 from rga.twin.hardware.inbox import INBOX, Inbox
 from rga.twin.repository import migrations
 from rga.twin.repository.database import database
@@ -28,14 +28,12 @@ class TwinFiles:
         settings: of the twin, as the service has them.
         model: of the twin.
         run: settings of its run.
-        mappings: by source.
         readers: by source.
     """
 
     settings: TwinSettings
     model: Model
     run: Settings
-    mappings: dict[str, RecordMapping]
     readers: dict[str, Reader]
 
     @classmethod
@@ -48,11 +46,10 @@ class TwinFiles:
         model, run = load_model(settings.model), live_settings(settings.settings, settings.arl0)
         addressee_of(model, run, settings.name, settings.seed)
         sources = {source_name(one): one for one in settings.source}
-        mappings = {name: mapping_of(one) for name, one in sources.items()}
-        readers = {
-            name: Reader(name, model, mappings[name], one.stated) for name, one in sources.items()
-        }
-        return cls(settings, model, run, mappings, readers)
+        readers = readers_of(settings.name, sources, model)
+        for one in readers.values():
+            one.stated_names()  # of stated columns two may mean the same
+        return cls(settings, model, run, readers)
 
     def check_goes_on(self, directory: Path) -> None:
         """Whether the twin that was kept in a directory, if there is one, is this one.

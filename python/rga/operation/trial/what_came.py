@@ -29,7 +29,7 @@ class WhatCame:
         size: of the payloads that can be used [bytes].
         first, last: moments of their readings, microseconds since 1970 (UTC); None: none came.
         refused: why payloads cannot be used, each reason once.
-        stated: sensors and contexts of rows whose columns the configuration states.
+        stated: sensors and contexts of columns that the configuration states.
     """
 
     samples: list[SensorSamples] = field(default_factory=list)
@@ -96,7 +96,7 @@ def source_findings(
         reader: of the source, which has read it.
         wait: how long it was listened to [s].
     """
-    yield from _channel_findings(where, reader)
+    yield from channel_findings(where, reader)
     if source.kind == "http":
         what = "loggers send to the service: nothing can be heard before it runs"
         yield Finding("note", where, what, "look at the page Data when it runs")
@@ -113,8 +113,12 @@ def source_findings(
         yield Finding("error", where, what, "correct format or mapping of the source")
 
 
-def _channel_findings(where: str, reader: Reader) -> Iterator[Finding]:
+def channel_findings(where: str, reader: Reader) -> Iterator[Finding]:
     """Channels that are not used, or not as they say."""
+    for channel in reader.mapping.overruled:
+        what = f"the channel {channel!r} is left out: [unused] names it as well as [channels]"
+        remedy = "leave it out of [unused] where it is to be read"
+        yield Finding("warning", where, what, remedy)
     for channel, why in reader.remarks.refused.items():
         what = f"the channel {channel!r} is not used: {why}"
         remedy = "name it under [channels] or [unused] in import.toml"
