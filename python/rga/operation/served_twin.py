@@ -101,9 +101,7 @@ class ServedTwin:
         """
         names = {*self.model.sensors, *self.model.context}
         found = {
-            name: opened(
-                one, self._readers[name].mapping, self.name, names, _TwinInlet(self, name)
-            )
+            name: opened(one, self._readers[name].mapping, self.name, names, _TwinInlet(self, name))
             for name, one in self._sources.items()
         }
         return {name: source for name, source in found.items() if source is not None}

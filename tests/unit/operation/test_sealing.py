@@ -337,7 +337,7 @@ def test_a_clock_that_runs_back_changes_no_row(tmp_path: Path, model: Model) -> 
 def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
     reader = twin.readers["logger"]
     for payload, words in (
-        (b"garbage", "garbage"),
+        (b"garbage", "no rows below the header"),
         (b'{"v": 1}', "no packet"),
         (b"time,D1\n2026-11-23T00:00:00,1.5\n2026-11-23T00:01:00,2.5\n", "no zone"),
         (b"time,D1\n0,1.5\n1,2.5\n", "no time stamps"),
