@@ -1,6 +1,7 @@
 """The processes that play the twins of a service: each is begun anew when it ends."""
 
 import multiprocessing
+import signal
 import time
 from collections.abc import Callable, Sequence
 from ctypes import c_int
@@ -132,6 +133,8 @@ def _play(
     told: "Connection[object, object]",
 ) -> None:
     """What a worker does until it is ended, or the service is gone."""
+    # A terminal interrupts all of its processes; the service ends its workers itself.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The service itself plays no twin, and starts without what that takes.
     with importing_much():
         from rga.jobs.worker import Worker

@@ -1,5 +1,6 @@
 """`rga serve` as a process: killed between decisions, and asked by commands."""
 
+import os
 import random
 import signal
 import time
@@ -52,7 +53,10 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
     done = rga("rollback", place, "--to", "1", "--why", "to compare")
     assert (done.code, done.err) == (0, "")
     assert "Version 1 is in force again" in done.out
-    assert "Model version 1 is in force" in rga("status", place).out
+    said, alarms = rga("status", place).out, running.get(f"{EAST}/alarms")
+    assert "Model version 1 is in force" in said
+    assert len(alarms) == 0 or f"{len(alarms)} alarm" in said
+    assert ("No alarm is open." in said) == (len(alarms) == 0)
     assert "to compare" in rga("replay", place).out
     found = rga("whatif", place, "--set", "temperature=30")
     assert found.code == 0
@@ -62,6 +66,15 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
         assert refused.code == 2
         assert refused.err.startswith("error: ")
     check_a_stream_ends_with(running)
+
+
+def test_a_terminal_that_interrupts_all_of_it_ends_it_in_a_word(running: Running) -> None:
+    time.sleep(3.0)
+    os.killpg(running.process.pid, signal.SIGINT)
+    assert running.process.wait(PATIENCE) == 128 + signal.SIGINT
+    said = (running.folder / "said.txt").read_text("utf-8")
+    assert "Traceback" not in said
+    assert "interrupted" in said
 
 
 def test_a_client_that_leaves_a_stream_is_no_error(running: Running) -> None:

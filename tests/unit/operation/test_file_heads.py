@@ -89,6 +89,13 @@ def test_every_row_is_read_with_all_lines_above_the_first(
         (b"Logger X\ntime,D1,D2\n", b"time,D2,D1\n", b"Logger X\ntime,D2,D1\n"),
         (b"Logger X\ntime,D1,D2\n", b"Logger X\ntime,D2,D1\n", b"Logger X\ntime,D2,D1\n"),
         (b"time D1 D2\n", b"time D2 D1\n", b"time D2 D1\n"),
+        (b"time,D1,D2\n,mm,cm\n", b"time,D1,D2\n", b"time,D1,D2\n,mm,cm\n"),
+        (b"time,D1,D2\n,mm,cm\n", b"time,D2,D1\n", b"time,D2,D1\n,cm,mm\n"),
+        (
+            b'"TOA5","a"\n"TS","D1","D2"\n"TS","mm","cm"\n"","Avg","Smp"\n',
+            b'"TS","D2","D1"\n',
+            b'"TOA5","a"\n"TS","D2","D1"\n"TS","cm","mm"\n"","Smp","Avg"\n',
+        ),
     ],
 )
 def test_rows_below_a_head_that_comes_again_are_read_by_it(

@@ -53,16 +53,32 @@ def _show_served(place: str, json: str | None) -> None:
     else:
         last = f", the last of {now['time']}" if now["time"] else ""
         causes = f" with {', '.join(now['causes'])}" if now["causes"] else ""
-        state = "out of sync" if now["out_of_sync"] else "no alarm is open"
+        state = "; out of sync" if now["out_of_sync"] else ""
         typer.echo(f"{client.twin}: {counted(now['rows'], 'row')}{last}; {NEXT[now['stage']]}.")
-        typer.echo(f"Model version {now['version']}{causes} is in force; {state}.")
+        typer.echo(f"Model version {now['version']}{causes} is in force{state}.")
         if now["undecided"] is not None:
             typer.echo(f"Undecided: proposal {now['undecided']['number']}, ", nl=False)
             typer.echo(f"{now['undecided']['words']}.")
+    typer.echo(_alarms_in_words([one["state"] for one in client.get("/alarms")]))
     if found["lag"]:
         typer.echo(f"{counted(found['lag'], 'row')} wait to be played.")
     for what, words in found["faults"].items():
         typer.echo(f"{what}: {words}")
+
+
+def _alarms_in_words(states: list[str]) -> str:
+    """How many alarms are open, by the state of each.
+
+    >>> _alarms_in_words(["raised", "acknowledged"]), _alarms_in_words([])
+    ('2 alarms are open, 1 to acknowledge.', 'No alarm is open.')
+    """
+    from rga.quantities import counted
+
+    if not states:
+        return "No alarm is open."
+    unseen = sum(one in ("raised", "cleared") for one in states)
+    is_open = "is open" if len(states) == 1 else "are open"
+    return f"{counted(len(states), 'alarm')} {is_open}, {unseen or 'none'} to acknowledge."
 
 
 def _waiting(place: str) -> str:

@@ -136,6 +136,8 @@ class HeadFinder:
         """
         if self._is_stated or self.mapping.logger or _TOA5.match(above[0]):
             count = head.count - (0 if begins_anew(lines[0], above) else head.names or 0)
+            rows = (k for k, line in enumerate(lines[:count]) if k and _is_row(line))
+            count = next(rows, count)
             return count if len(lines) >= count else None
         found = self.find(lines)
         return None if found is None else max(1, found.count)
@@ -144,6 +146,37 @@ class HeadFinder:
 def begins_anew(line: bytes, above: Sequence[bytes]) -> bool:
     """Whether a head that comes again does so with its first line, not with that of the names."""
     return _first_cell(line) == _first_cell(above[0])
+
+
+def completed(again: Sequence[bytes], above: Sequence[bytes], head: HeadLines) -> list[bytes]:
+    """A head that came again, with what it lacks of the one before.
+
+    These are the lines above the names, and those below, such as units, in the order of its names.
+
+    Args:
+        again: its lines.
+        above: those of the head before.
+        head: which of them are what.
+
+    >>> before, head = [b"Logger X", b"time,D1,D2", b",cm,mm"], HeadLines(3, 1)
+    >>> completed([b"time,D2,D1"], before, head)
+    [b'Logger X', b'time,D2,D1', b',mm,cm']
+    """
+    if head.names is None:
+        return [*again]
+    first = [] if begins_anew(again[0], above) else [*above[: head.names]]
+    found = [*first, *again]
+    names, below = above[head.names], above[head.names + 1 : head.count]
+    if len(found) != head.names + 1 or not below:
+        return found
+    known, wanted = _cells(names), _cells(found[-1])
+    if any(name_and_unit(one.decode("latin-1"))[1] for one in wanted):
+        return found
+    sign = _sign(names) or b" "
+    for line in below:
+        cells = dict(zip(known, _cells(line), strict=False))
+        found.append(sign.join(cells.get(one, b"") for one in wanted))
+    return found
 
 
 def beginnings(lines: Sequence[bytes], head: HeadLines) -> re.Pattern[bytes] | None:
@@ -171,5 +204,23 @@ def beginnings(lines: Sequence[bytes], head: HeadLines) -> re.Pattern[bytes] | N
 
 
 def _first_cell(line: bytes) -> bytes:
-    parts = re.split(rb"[,;\t|]", line.removeprefix(_MARK), maxsplit=1)
-    return parts[0].strip() if len(parts) > 1 else b"".join(line.split()[:1])
+    return next(iter(_cells(line)), b"")
+
+
+def _sign(line: bytes) -> bytes | None:
+    """What parts the cells of a line; None: blanks."""
+    found = re.search(rb"[,;\t|]", line)
+    return None if found is None else found[0]
+
+
+def _cells(line: bytes) -> list[bytes]:
+    line = line.removeprefix(_MARK)
+    return [cell.strip() for cell in line.split(_sign(line))]
+
+
+def _is_row(line: bytes) -> bool:
+    """Whether most cells of a line are numbers, times, or missing."""
+    from rga.records.formats.shape import is_value
+
+    cells = [cell.decode("latin-1").strip('"') for cell in _cells(line) if cell]
+    return 2 * sum(map(is_value, cells)) > len(cells)

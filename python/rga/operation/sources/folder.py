@@ -16,7 +16,7 @@ from rga.operation.sources.file_head import (
     HeadFinder,
     HeadLines,
     beginnings,
-    begins_anew,
+    completed,
 )
 from rga.operation.sources.source import Inlet
 
@@ -273,12 +273,12 @@ def _whole_lines(opened: BinaryIO, offset: int, ended: bool = True) -> list[byte
 def _head(
     opened: BinaryIO, place: tuple[int, int], above: Sequence[bytes], found: HeadLines
 ) -> bytes:
-    """The lines above rows; where the names alone come again, with those before them."""
+    """The lines above rows; of a head that came again, with what it lacks of the first."""
     opened.seek(place[0])
     head = opened.read(place[1] - place[0])
-    if not place[0] or begins_anew(head.split(b"\n")[0], above):
+    if not place[0]:
         return head
-    return b"".join(line + b"\n" for line in above[: found.names]) + head
+    return b"".join(line + b"\n" for line in completed(head.split(b"\n")[:-1], above, found))
 
 
 def _tail(opened: BinaryIO, offset: int) -> str:
