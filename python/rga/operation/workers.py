@@ -5,6 +5,7 @@ import signal
 import time
 from collections.abc import Callable, Sequence
 from ctypes import c_int
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -83,6 +84,11 @@ class Workers:
 
     def _keep_one(self, kind: "Kind") -> None:
         """A worker of a kind, and another when it ends."""
+        # A terminal interrupts all of its processes, and the service ends its workers itself: they
+        # have from this thread, from their first moment on, that nothing interrupts them. What
+        # multiprocessing begins beside the first process would undo it, and so is begun before.
+        resource_tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         while not self._ending.is_set():
             places = [one for one in self._places if one not in self._left_alone]
             # Without a lock, which a worker that is killed might hold for ever.
@@ -133,8 +139,6 @@ def _play(
     told: "Connection[object, object]",
 ) -> None:
     """What a worker does until it is ended, or the service is gone."""
-    # A terminal interrupts all of its processes; the service ends its workers itself.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The service itself plays no twin, and starts without what that takes.
     with importing_much():
         from rga.jobs.worker import Worker

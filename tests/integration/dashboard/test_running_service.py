@@ -68,8 +68,11 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
     check_a_stream_ends_with(running)
 
 
-def test_a_terminal_that_interrupts_all_of_it_ends_it_in_a_word(running: Running) -> None:
-    time.sleep(3.0)
+@pytest.mark.parametrize("after", [0.0, 3.0])
+def test_a_terminal_that_interrupts_all_of_it_ends_it_in_a_word(
+    running: Running, after: float
+) -> None:
+    time.sleep(after)
     os.killpg(running.process.pid, signal.SIGINT)
     assert running.process.wait(PATIENCE) == 128 + signal.SIGINT
     said = (running.folder / "said.txt").read_text("utf-8")
