@@ -143,11 +143,11 @@ def _exchanged(current: MixedFit, evidence: MixedEvidence, screening: Screening)
 def _begun(current: MixedFit, evidence: MixedEvidence) -> MixedFit:
     """The causes of the record, those that act in all of it begun when the modes show them first.
 
-    A record that lies wholly behind an onset cannot tell it.
+    A record that lies wholly behind an onset cannot tell it, nor can shapes, which are means.
     """
     for number, one in enumerate(current.hypotheses):
         shown = evidence.on_modes(current.hypotheses)
-        if one.onset is not None or number not in shown:
+        if one.onset is not None or one.at_points or number not in shown:
             continue
         onset = likeliest_onset(current.modal, shown.index(number))
         if onset is None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.modal.recorded import without_dead_points
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.schema import Model
@@ -96,7 +97,8 @@ class ModalReadings(ModalWindows):
 
         Args:
             model: with modes.
-            record: of its structure.
+            record: of its structure; what it holds of points that the model says do not work is
+                not looked at.
             changed: what modes look like in windows in which the structure is known to be another
                 than in the model, by number of the window among those that are covered.
 
@@ -106,7 +108,7 @@ class ModalReadings(ModalWindows):
         """
         simulator = ModalSimulator(model)
         expected, every = simulator.expected, len(np.unique(record.time))
-        record = _covered(record, simulator.needed, model)
+        record = _covered(without_dead_points(record, model), simulator.needed, model)
         uncovered = every - len(np.unique(record.time))
         named = named_modes(record, model, expected, changed)
         check_units(named, record, expected, model)
