@@ -8,8 +8,8 @@ import numpy as np
 from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
 from rga.diagnosis.modal.search import (
-    MODES_A_CAUSE,
     UNLIKELY,
+    borne,
     likeliest_onset,
     worth_fitting,
 )
@@ -67,11 +67,12 @@ def search(
     candidates = modal_hypotheses(evidence.likelihood.trials)
     naming = criteria.naming
     modes = len(evidence.likelihood.readings.modes)
-    more = min(naming.most_causes - len(current.hypotheses), max(1, modes // MODES_A_CAUSE))
+    of_record = len(current.hypotheses)
     first = promising = _promising(evidence, current, candidates, progress)
-    for number in range(more):
+    for number in range(naming.most_causes - of_record):
         if number:
-            promising = _promising(evidence, current, candidates, progress)
+            left = borne(candidates, current.hypotheses[of_record:], modes)
+            promising = _promising(evidence, current, left, progress)
         fits = _fitted(evidence, current, promising)
         best = max(fits, key=log_evidence, default=current)
         if best.log_evidence - current.log_evidence < naming.log_odds:

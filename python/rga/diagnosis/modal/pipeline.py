@@ -100,8 +100,9 @@ def _diagnosed(
     found = _searched(model, readings, criteria, progress)
     if found.fit.hypotheses and readings.names_in_doubt:
         # A structure that has changed may have modes that are hardly those expected.
-        looks = found.fit.likelihood.trials.looks(effects_at(found.fit.hypotheses, found.fit.z))
-        again = ModalReadings.of(model, record, looks)
+        effects = effects_at(found.fit.hypotheses, found.fit.z)
+        looks = found.fit.likelihood.trials.looks(effects)
+        again = ModalReadings.of(model, record, looks, list(effects.values()))
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)
@@ -110,7 +111,8 @@ def _diagnosed(
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
     doubts = modes_off(likelihood, after)
-    if found.fit.hypotheses and left_out.after.mean() >= left_out.before.mean():
+    of_structure = any(not one.at_points for one in found.fit.hypotheses)
+    if of_structure and left_out.after.mean() >= left_out.before.mean():
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)

@@ -1,6 +1,6 @@
 """What sensors at points make of mode shapes: a turned one, two that are exchanged, a dead one."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
+from rga.simulation.modal.pairing import Expected
 
 
 def changes_shapes(effect: Effect) -> bool:
@@ -43,6 +44,30 @@ def as_recorded(
             still = np.zeros(count)
             effect.change_readings(Readings(shown, {}, still, still, {"": columns}), own)
     return found
+
+
+def looks_as_recorded(
+    expected: Mapping[str, Expected], effects: Iterable[Effect], model: Model
+) -> dict[str, Expected]:
+    """What modes look like to the sensors at points, by what acts on these all the time.
+
+    Args:
+        expected: true looks, by name of the mode.
+        effects: of which some may act at points.
+        model: with these points.
+    """
+    always = [one for one in effects if changes_shapes(one) and one.onset is None]
+    if not always:
+        return dict(expected)
+    true = np.full((len(expected), len(model.points)), np.nan)
+    for shape, look in zip(true, expected.values(), strict=True):
+        shape[look.at] = look.shape
+    middle = {name: np.array([sum(one.range) / 2]) for name, one in model.context.items()}
+    (shown,) = as_recorded([true], always, model.points, {**middle, "time": np.zeros(1)})
+    return {
+        name: replace(look, at=np.flatnonzero(np.isfinite(shape)), shape=shape[np.isfinite(shape)])
+        for (name, look), shape in zip(expected.items(), shown, strict=True)
+    }
 
 
 def without_dead_points(record: ModalRecord, model: Model) -> ModalRecord:
