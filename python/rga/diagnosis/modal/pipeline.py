@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis.assemble.effects import cause_name, content
+from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
@@ -117,7 +117,10 @@ def _diagnosed(
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
     doubts += doubtful_windows(readings)
-    effects = [estimated(found.fit, number) for number in range(len(found.fit.hypotheses))]
+    effects = [
+        as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
+        for number in range(len(found.fit.hypotheses))
+    ]
     extended = model.extended({cause_name(model, effect): effect for effect in effects})
     findings = Findings(
         verdict=_verdict(found, bool(doubts), criteria),

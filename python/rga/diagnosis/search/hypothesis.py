@@ -66,10 +66,15 @@ class Hypothesis:
         """The kind as in the model file."""
         return str(self.kind.model_fields["kind"].default)
 
+    @cached_property
+    def points(self) -> list[str]:
+        """The points at which it acts on what is measured of mode shapes, and on nothing else."""
+        return self._usual.points_named()
+
     @property
     def at_points(self) -> bool:
-        """Whether it acts on what is measured of mode shapes at points, and on nothing else."""
-        return bool(self._usual.points_named())
+        """Whether it acts at points."""
+        return bool(self.points)
 
     @property
     def log_prior(self) -> float:

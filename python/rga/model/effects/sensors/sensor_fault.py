@@ -47,7 +47,7 @@ class SensorFault(Effect):
 
     kind: Literal["sensor_fault"] = "sensor_fault"
     action = Action(
-        inspect="sensor {place}: cable, connector, amplifier",
+        inspect="the sensor {place}: cable, connector, amplifier",
         check="replace it, or leave the channel out",
     )
     on_sensors = True

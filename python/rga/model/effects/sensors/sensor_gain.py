@@ -31,7 +31,7 @@ class SensorGain(Effect):
 
     kind: Literal["sensor_gain"] = "sensor_gain"
     action = Action(
-        inspect="the fixing and the direction of sensor {place}",
+        inspect="the fixing and the direction of the sensor {place}",
         check="its calibration factor, sign, bridge circuit and cable length; shunt calibration",
         test="read it beside a second sensor at the same place",
     )
