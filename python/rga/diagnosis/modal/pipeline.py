@@ -100,9 +100,9 @@ def _diagnosed(
     found = _searched(model, readings, criteria, progress)
     if found.fit.hypotheses and readings.names_in_doubt:
         # A structure that has changed may have modes that are hardly those expected.
-        effects = effects_at(found.fit.hypotheses, found.fit.z)
-        looks = found.fit.likelihood.trials.looks(effects)
-        again = ModalReadings.of(model, record, looks, list(effects.values()))
+        causes = effects_at(found.fit.hypotheses, found.fit.z)
+        looks = found.fit.likelihood.trials.looks(causes)
+        again = ModalReadings.of(model, record, looks, list(causes.values()))
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)

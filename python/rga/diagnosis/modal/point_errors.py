@@ -104,7 +104,7 @@ class PointErrors:
                 continue
             along, sizes, _ = np.linalg.svd(self._parts(mode, self.usual).T / self.spread, False)
             told = along * (sizes**2 / (1.0 + sizes**2))
-            # Left out of a normal variable, one lies off by its part of x over that of the identity.
+            # One of normal variables lies off the others' word by its part of C^-1 x over C^-1's.
             left = look.shape - told @ (along.T @ look.shape)
             squares[look.at] += (left / (1.0 - (told * along).sum(1))) ** 2
             counts[look.at] += 1

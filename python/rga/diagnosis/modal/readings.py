@@ -110,8 +110,8 @@ class ModalReadings(ModalWindows):
                 known in no window.
         """
         simulator = ModalSimulator(model)
-        own = (*model.effects.values(), *effects)
-        expected = looks_as_recorded(simulator.expected, own, model)
+        acting = (*model.effects.values(), *effects)
+        expected = looks_as_recorded(simulator.expected, acting, model)
         every = len(np.unique(record.time))
         record = _covered(without_dead_points(record, model), simulator.needed, model)
         uncovered = every - len(np.unique(record.time))

@@ -14,7 +14,7 @@ from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.recorded import as_recorded, changes_shapes
 from rga.diagnosis.modal.stages import stages
 from rga.diagnosis.modal.standing import brings_mass, without_standing
-from rga.diagnosis.modal.supports import supports
+from rga.diagnosis.modal.supports import supports, window_contexts
 from rga.errors import InputError
 from rga.model.effect import Effect, Values
 from rga.model.schema import Model
@@ -116,7 +116,7 @@ class ModalTrials(Generic[AnyWindows]):
         self._own = {name: one for name, one in model.effects.items() if _of_windows(one)}
         always = {name: one for name, one in model.effects.items() if name not in self._own}
         structures = ModalStructures(model.model_copy(update={"effects": always}))
-        self._given = _contexts(model, structures.needed, readings)
+        self._given = window_contexts(model, structures.needed, readings)
         driving = [self._given[name] for name in sorted(structures.needed)]
         standing = [one.weight(readings.time) for one in always.values() if _stands_late(one)]
         chosen, self._weights, self._middle = supports(readings, driving, standing)
@@ -387,22 +387,3 @@ def _of_windows(effect: Effect) -> bool:
 def _stands_late(effect: Effect) -> bool:
     """Whether an effect of the model brings a mass that stands there in some windows only."""
     return effect.onset is not None and brings_mass(effect)
-
-
-def _contexts(model: Model, needed: set[str], readings: AnyWindows) -> Values:
-    """Contexts of the windows, float[windows] each; what was not measured lies in its middle."""
-    found: Values = {}
-    for name, variable in model.context.items():
-        column = readings.contexts.get(name)
-        seen = np.zeros(0, dtype=bool) if column is None else np.isfinite(column)
-        if column is not None and seen.any():
-            found[name] = np.where(seen, column, column[seen].mean())
-        elif name in needed:
-            raise InputError(
-                f"context {name!r}, which drives the structure, is not in the modal record",
-                f"model {model.name!r}",
-                f"give a column {name} beside the frequencies",
-            )
-        else:
-            found[name] = np.full(len(readings.time), sum(variable.range) / 2)
-    return found

@@ -44,9 +44,8 @@ class SensorSwap(Effect):
         yield from ({"points": pair} for pair in combinations(model.points, 2))
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        swapped = self.weight(readings.time) > 0
+        swapped = np.flatnonzero(self.weight(readings.time) > 0)[:, None]
         pairs = [readings.at(self.sensors_named()), *readings.at_points(self.points_named())]
         for pair in pairs:
             if len(pair) == 2:
-                shown = readings.values[np.ix_(swapped, pair[::-1])]
-                readings.values[np.ix_(swapped, pair)] = shown
+                readings.values[swapped, pair] = readings.values[swapped, pair[::-1]]
