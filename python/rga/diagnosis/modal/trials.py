@@ -288,6 +288,8 @@ class ModalTrials(Generic[AnyWindows]):
                 if effect.overrides("frequency_factor")
             ]
             squares, shapes, *_ = self._modes(changed)
+            if not len(squares):
+                raise InputError("no computed mode is left", "modes", "state more masses")
             moving = shapes[:, : len(self.model.nodes), :3]
             log_f = np.log(np.sqrt(squares) / (2 * np.pi))
             yield Solved(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
