@@ -28,7 +28,8 @@ BENDS = 9
 MODEL_ERROR = 0.01
 #: errors that it may make instead, where the modes show them, and the factor by which one usually
 #: does: a welded structure, which a truss has with pins, leaves 3 % and more
-LEVELS, USUALLY = tuple(MODEL_ERROR * 2.0 ** (0.5 * k) for k in range(6)), 2.0
+LEVELS: tuple[float, ...] = tuple(MODEL_ERROR * 2.0 ** (0.5 * k) for k in range(6))
+USUALLY = 2.0
 #: error that a model makes of what a load of known mass changes of a frequency. The change goes
 #: with the square of the motion there, which is off by a share of the largest: the error is this
 #: share of the geometric mean of the change and of that of the mode that moves most. A truss for a
