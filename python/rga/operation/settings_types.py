@@ -81,7 +81,7 @@ class Lasting:
         return core_schema.no_info_plain_validator_function(
             self.seconds,
             serialization=core_schema.plain_serializer_function_ser_schema(
-                _as_written, when_used="json"
+                in_words, when_used="json"
             ),
         )
 
@@ -92,10 +92,10 @@ class Lasting:
         return _text(_DURATION.pattern, self.examples) | {"description": limits}
 
 
-def _as_written(seconds: float) -> str:
+def in_words(seconds: float) -> str:
     """A duration in the largest unit in which it is a whole number.
 
-    >>> _as_written(600.0), _as_written(90.0), _as_written(0.0)
+    >>> in_words(600.0), in_words(90.0), in_words(0.0)
     ('10 min', '90 s', '0 s')
     """
     whole = [unit for unit, size in _SIZES.items() if seconds >= size and seconds % size == 0]
