@@ -395,4 +395,4 @@ def test_a_broker_that_is_away_is_told(mosquitto: Mosquitto, model: Model, tmp_p
     use_broker(tmp_path, mosquitto)
     code, said = checked(tmp_path)
     assert code == 2
-    assert "the broker cannot be reached" in said
+    assert f"the broker mqtt://127.0.0.1:{mosquitto.port} cannot be reached" in said
