@@ -102,7 +102,7 @@ class FollowedRows:
     def measured_in_words(self, rows: int) -> str:
         """Which contexts the first so many rows have values of, where none has to be inferred."""
         came = np.isfinite(self.ledger.rows(0, rows).measured).any(axis=0)
-        there = [name for name, is_there in zip(self._station.measured, came, strict=True) if is_there]
+        there = {self._station.measured[column] for column in np.flatnonzero(came)}
         lacking = [name for name in self._names if name not in there]
         if not lacking:
             return "all contexts are measured"
