@@ -66,7 +66,8 @@ class SensorQuality:
             [one not in context or context[one].noise is not None for one in names], dtype=np.bool_
         )
         self._silent_rows = max(1, int(np.ceil(patience / every)))
-        stated = {name: one.unit for name, one in (*model.sensors.items(), *context.items())}
+        stated = {name: one.unit for name, one in model.sensors.items()}
+        stated |= {name: one.unit for name, one in context.items()}
         self._units = [stated.get(one, "").removeprefix("-") for one in names]
         n = len(self._names)
         #: rows one after the other, and begin of the first of them, by cause
