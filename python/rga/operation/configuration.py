@@ -64,7 +64,7 @@ class RetentionSettings(SettingsTable):
         raw: packets, once rows were made of them [s]; None: for ever.
     """
 
-    raw: Annotated[float, Lasting("7 d", examples=("30 d",))] | None = None
+    raw: Annotated[float, Lasting("7 d", "36525 d", examples=("30 d",))] | None = None
 
 
 class TwinSettings(SettingsTable):

@@ -94,6 +94,7 @@ def test_the_past_is_told_from_the_present_and_keeps_its_span(client: TestClient
     [
         ("?span=century", "span: there is no &#39;century&#39;: known are day, week"),
         ("?at=soon", "at: &#39;soon&#39; is no time"),
+        ("?at=nan", "at: there is no such time"),
         ("?at=inf", "at: there is no such time"),
         ("/queries?kind=zz", "kind: there is no &#39;zz&#39;: known are Q1, Q2"),
         ("/queries?until=soon", "until: &#39;soon&#39; is no time"),

@@ -283,7 +283,7 @@ def test_a_plan_begins_with_what_the_findings_advise(
     taken = set()
     for stand in ("1.50 m (node L1)", "3.75 m (node L2)", "6.00 m (node L3)"):
         begin = advice.index("the first at ") + len("the first at ")
-        words = advice.replace(advice[begin : advice.index(", [kN]")], stand)
+        words = advice.replace(advice[begin : advice.index(")", begin) + 1], stand)
         planned = plan(model, advising(findings, words), sensors=1, positions=1)
         (one,), (test,) = planned.advised, planned.tests
         assert one.planned
