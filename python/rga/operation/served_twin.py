@@ -17,6 +17,7 @@ from rga.operation.inbox.flow import bytes_a_second
 from rga.operation.inbox.known_packets import COUNTED_AGAIN
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
+from rga.operation.inbox.row_length import keep_length
 from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.overtaken import Overtaken
 from rga.operation.rows.remarks import ChannelRemarks
@@ -48,7 +49,7 @@ class ServedTwin:
         packets: that have come.
 
     Raises:
-        InputError: its model, its settings or a mapping cannot be used.
+        InputError: its model, its settings or a mapping cannot be used, or another twin is there.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class ServedTwin:
         self.inbox = Inbox(directory)
         grid = settings.rows.grid
         self.packets = Packets(self.inbox, grid, self._sources)
+        keep_length(self.inbox, grid.every, str(directory))
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._overtaken = Overtaken(self.packets, self._sources, clock)
         days = None if settings.retention.raw is None else settings.retention.raw / 86_400

@@ -275,7 +275,7 @@ def carry_out(place: str | Path, command: AnyCommand, source: str | None = None)
     except InUse as error:
         if not (Path(place) / INBOX).is_file():
             raise
-        remedy = "ask it by LiveTwin(...).ask, and whoever plays it carries it out"
+        remedy = "ask the service or the program that plays it, which carries it out"
         raise InUse(error.what, error.where, remedy) from None
 
 

@@ -11,8 +11,14 @@ from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading, heading_as_of
 from rga.dashboard.pages.in_force import in_force
 from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
-from rga.dashboard.pages.times import age_words, given_moment, of_event
-from rga.dashboard.pages.windows import SPANS, asked_span, chosen_window
+from rga.dashboard.pages.times import age_words, of_event
+from rga.dashboard.pages.windows import (
+    SPANS,
+    NotUnderstood,
+    asked_moment,
+    asked_span,
+    chosen_window,
+)
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
@@ -57,6 +63,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
 
     Raises:
         InputError: its repository cannot be read.
+        NotUnderstood: there is no such time or stretch of it.
     """
     latest, twin = seen.reading.now(), seen.reading.twin
     found: dict[str, Any] = {"heading": heading(seen, latest), "tab": ""}
@@ -111,16 +118,19 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
 
 
 def asked_time(query: Mapping[str, str], start: datetime) -> float | None:
-    """Seconds from the first row to the time that an address asks for; None: it asks for none."""
-    text = query.get("at", "")
-    moment = given_moment(text)
-    if moment is not None:
-        return max(0.0, (moment - start).total_seconds())
+    """Seconds from the first row to the time that an address asks for; None: it asks for none.
+
+    Raises:
+        NotUnderstood: it asks for what is neither a time nor seconds.
+    """
     try:
-        seconds = float(text)
+        seconds = float(query.get("at", ""))
     except ValueError:
-        return None
-    return max(0.0, seconds) if np.isfinite(seconds) else None
+        moment = asked_moment(query, "at")
+        return None if moment is None else max(0.0, (moment - start).total_seconds())
+    if not np.isfinite(seconds):
+        raise NotUnderstood("at: there is no such time")
+    return max(0.0, seconds)
 
 
 def context_words(value: float, spread: float, unit: str, measured: bool) -> str:

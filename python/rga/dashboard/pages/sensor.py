@@ -61,6 +61,7 @@ def sensor_page(seen: SeenTwin, name: str, query: Mapping[str, str]) -> dict[str
     Raises:
         KeyError: the twin has no such sensor.
         InputError: the repository of the twin cannot be read.
+        NotUnderstood: there is no such stretch of time.
     """
     now, twin, view = seen.reading.now(), seen.reading.twin, seen.reading.view()
     if now is None or twin is None or view is None or name not in now.sensors:

@@ -84,7 +84,7 @@ class TwinWatch:
         self._next: _Watched | None = None
         place = None if self._stored is None else self._stored.place
         self._reading = TwinReading(twin.name, twin.directory, repository)
-        self._run = RepositoryWatch(self._reading, chosen, self._rows.every, place)
+        self._run = RepositoryWatch(self._reading, chosen, self._rows.every, twin.model, place)
         self._quality: SensorQuality | None = None
         self._account = AccountWatch(twin, clock)
         names = [source_name(one) for one in settings.source]
