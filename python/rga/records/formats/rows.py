@@ -115,7 +115,7 @@ def _check(
     *,
     ragged: bool,
 ) -> None:
-    """Refuses a row with fewer cells than names or more than the rest, and values without a name."""
+    """Refuses rows with fewer cells than names, or unlike the rest, and values without a name."""
     count = len(names)
     for number, column in enumerate(frame.columns):
         has_name = number < count and names[number]
