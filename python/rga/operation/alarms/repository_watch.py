@@ -112,7 +112,7 @@ class RepositoryWatch:
         )
         standing = standing_of(view)
         conditions = []
-        if standing.alarm is not None or standing.doubted:
+        if standing.out_of_sync:
             conditions.append(occurred[-1] if occurred else self._lasting(view, standing))
         waiting, endings = proposed(self._name, view, partial(_at, view))
         if waiting is not None:
