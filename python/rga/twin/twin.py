@@ -192,7 +192,7 @@ class Twin:
             time=last.time_label(float(last.time[-1])) if len(last) else None,
             version=self.version,
             causes=tuple(effect_words(one) for one in effects.values()),
-            out_of_sync=standing.alarm is not None,
+            out_of_sync=standing.out_of_sync,
             undecided=self._undecided,
             forgotten=self.forgotten,
             acknowledged_at=self._view.acknowledged_at,

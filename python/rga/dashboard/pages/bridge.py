@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from rga.dashboard.in_force import in_force
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading, heading_as_of
-from rga.dashboard.pages.in_force import in_force
-from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
+from rga.dashboard.pages.sensors_now import farthest_first, out_of_use_words, sensor_rows
 from rga.dashboard.pages.times import age_words, of_event
 from rga.dashboard.pages.windows import (
     SPANS,
@@ -102,6 +102,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
         "gap": None if now.recent is None else number(now.recent, 2),
         "level_now": gap_level(now.recent),
         "age": age_words(now.time, Surroundings.now()),
+        "out_of_use": out_of_use_words(now),
         "rows": rows,
         "sensor_of": {one.number: one for one in rows},
         "ranked": farthest_first(rows),
@@ -177,8 +178,10 @@ def _versions(seen: SeenTwin, window: Window, now: TwinNow) -> list[VersionStret
     assert view is not None  # it has begun
     assert now.time is not None
     found = []
-    for one in in_force(view, min(seen.reading.elapsed(now.time), window.end)):
-        left, right = (min(100.0, max(0.0, window.share(end))) for end in (one.begin, one.end))
+    last = min(seen.reading.elapsed(now.time), window.end)
+    for one in in_force(view):
+        ends = one.begin, one.until(last)
+        left, right = (min(100.0, max(0.0, window.share(end))) for end in ends)
         if right > left:
             found.append(VersionStretch(one.version, round(left, 2), round(right - left, 2)))
     return found

@@ -33,6 +33,8 @@ LEVELS = (
     GapLevel(4, "very far off", None),
 )
 UNKNOWN = GapLevel(-1, "no value", None)
+#: of a sensor that is not watched
+OUT_OF_USE = GapLevel(-1, "out of use", None)
 
 
 def gap_level(gap: float | None) -> GapLevel:

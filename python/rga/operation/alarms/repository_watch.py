@@ -118,7 +118,7 @@ class RepositoryWatch:
         )
         standing = standing_of(view)
         conditions = []
-        if _in_doubt(standing):
+        if standing.out_of_sync:
             conditions.append(occurred[-1] if occurred else self._lasting(view, standing))
         waiting, endings = proposed(self._name, view, partial(_at, view))
         if waiting is not None:
@@ -131,7 +131,7 @@ class RepositoryWatch:
         standing = standing_of(then)
         row = event.row if standing.since is None else standing.since
         words = f"{event.words}; {self._rate}" if self._rate else event.words
-        since, again = _at(then, row), _in_doubt(before)
+        since, again = _at(then, row), before.out_of_sync
         return Condition(self._key, words, since, event.sensors, is_again=again)
 
     def _lasting(self, view: RunView, standing: Standing) -> Condition:
@@ -144,11 +144,6 @@ class RepositoryWatch:
     @property
     def _key(self) -> ConditionKey:
         return ConditionKey(self._name, "gap", "alarm", "twin")
-
-
-def _in_doubt(standing: Standing) -> bool:
-    """Whether an alarm is open, or nobody has decided about what it has led to."""
-    return standing.alarm is not None or standing.doubted
 
 
 def _at(view: RunView, row: int) -> datetime:
