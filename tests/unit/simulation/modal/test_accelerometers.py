@@ -1,4 +1,4 @@
-"""Accelerometers that are turned, exchanged or dead: what is read of mode shapes at their points."""
+"""Accelerometers that are turned, exchanged or dead: what is read of shapes at their points."""
 
 from typing import Any
 
