@@ -126,6 +126,7 @@ def in_words(mistake: Mapping[str, Any]) -> str:
         "extra_forbidden": "there is no such key",
         "missing": "it is missing",
         "model_type": "give a table",
+        "bool_type": "write true or false",
     }
     message: str = mistake["msg"]
     return plain.get(mistake["type"], message.removeprefix("Value error, "))

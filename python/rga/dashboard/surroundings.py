@@ -16,6 +16,21 @@ from rga.twin.restore import standing_of
 
 
 @dataclass(frozen=True)
+class Feed:
+    """How the rows of a twin come, by the time at which things arrive and not by what they say.
+
+    Attributes:
+        lag: rows that are sealed, and that the twin has not played yet.
+        silence: how long none of its sources has sent anything [s]; None: one is heard of.
+        backlog: how old what they send is [s]; 0: no older than it may be.
+    """
+
+    lag: int = 0
+    silence: float | None = None
+    backlog: float = 0.0
+
+
+@dataclass(frozen=True)
 class SeenTwin:
     """A twin as its pages see it.
 
@@ -23,7 +38,6 @@ class SeenTwin:
         name: of the twin.
         served: what its sources send to.
         reading: what it says of itself.
-        patience: after which a silent source is waited for no longer [s].
         faults: what keeps its sources or its rows from going on, in words, by what it concerns.
         alarms: of the service, of this twin among others.
         forecast: how long the disk of the service has room.
@@ -32,7 +46,6 @@ class SeenTwin:
     name: str
     served: ServedTwin
     reading: TwinReading
-    patience: float
     faults: Mapping[str, str]
     alarms: AlarmBook
     forecast: Callable[[], DiskForecast]
@@ -46,6 +59,21 @@ class SeenTwin:
     def lag(self, now: TwinNow | None) -> int:
         """Rows that are sealed, and that the twin has not played yet."""
         return self.served.inbox.rows - (0 if now is None else now.rows)
+
+    def feed(self, now: TwinNow | None) -> Feed:
+        """How its rows come."""
+        names = self.served.source_names
+        is_silent = len(self.served.silent) == len(names)
+        silence = min(map(self.served.silence, names)) if is_silent else None
+        return Feed(self.lag(now), silence, self.served.backlog)
+
+    @property
+    def is_out_of_sync(self) -> bool:
+        """Whether its alarm is open that says so: raised and not cleared, whoever knows of it."""
+        return any(
+            one.twin == self.name and one.kind == "gap" and one.is_active
+            for one in self.alarms.open()
+        )
 
 
 class Surroundings:
@@ -67,7 +95,6 @@ class Surroundings:
             )
             for one in settings.twin
         }
-        self._patience = {one.name: one.rows.patience for one in settings.twin}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -85,7 +112,6 @@ class Surroundings:
             name,
             self._service.twins[name],
             self._readings[name],
-            self._patience[name],
             faults,
             self.alarms,
             partial(self._service.forecast, name),

@@ -47,9 +47,24 @@ class Truck:
         """From the first axle to the last [m]."""
         return sum(self.spacings)
 
+    @property
+    def words(self) -> str:
+        """Loads and spacings, as people say them.
+
+        >>> Truck((60.0, 100.0), (3.5,)).words, Truck((60.0, 80.0, 80.0), (3.5, 1.3)).words
+        ('60 and 100 kN, 3.5 m apart', '60, 80 and 80 kN, 3.5 and 1.3 m apart')
+        """
+        loads = f"{_listed(self.loads)} kN"
+        return f"{loads}, {_listed(self.spacings)} m apart" if self.spacings else loads
+
     def __str__(self) -> str:
         loads, spacings = (",".join(f"{x:g}" for x in part) for part in (self.loads, self.spacings))
         return f"{loads}@{spacings}" if spacings else loads
+
+
+def _listed(numbers: tuple[float, ...]) -> str:
+    *others, last = [f"{one:g}" for one in numbers]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def read_truck(text: str) -> Truck:
@@ -110,7 +125,7 @@ class Lane:
 
     def described(self, truck: Truck) -> str:
         """What a truck on it weighs, as an advice has it."""
-        return f"{'axles ' if self.driven else ''}[kN] @ [m] {truck}"
+        return f"{'axles of ' if self.driven else ''}{truck.words}"
 
     def nearest(self, position: float) -> str:
         """The node of the first path nearest to a position [m]."""

@@ -90,5 +90,5 @@ def check_same(known: Addressee, wanted: Addressee, place: Path) -> None:
         raise InputError(
             f"a live twin that differs in {' and '.join(others)} is here",
             str(place),
-            "take another directory, or go on with LiveTwin(directory)",
+            "give what it was begun with, or take another directory",
         )

@@ -6,6 +6,8 @@ from typing import Any
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 #: units whose large values read better with a prefix
 SCALED = ("N/m", "N m/rad", "N")
+#: units whose values below a tenth read better in thousandths
+SMALL = ("m", "rad")
 
 #: digits that a value is shown with, fewer than
 MOST_DIGITS = 7
@@ -20,6 +22,8 @@ def value_words(value: Any, unit: str) -> str:
     '24 [21, 28] MN/m'
     >>> value_words({"value": 1.00321, "ci90": [1.00212, 1.00423]}, "-")
     '1.003 [1.002, 1.004]'
+    >>> value_words(-0.0123, "m"), value_words(0.5, "m")
+    ('-12.3 mm', '0.5 m')
     """
     if isinstance(value, Mapping) and "value" in value:
         low, high = value["ci90"]
@@ -45,4 +49,4 @@ def _prefix(size: float, unit: str) -> tuple[float, str]:
         for scale, prefix in PREFIXES:
             if size >= scale:
                 return scale, prefix
-    return 1.0, ""
+    return (1e-3, "m") if unit in SMALL and 0 < size < 0.1 else (1.0, "")

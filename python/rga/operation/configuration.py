@@ -11,7 +11,7 @@ from rga.operation.alarms.alarm_settings import AlarmSettings
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.grid import Grid
-from rga.operation.settings_types import Duration, Name, Rarity, SettingsTable, duration_of
+from rga.operation.settings_types import Duration, Lasting, Name, Rarity, SettingsTable
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
 
@@ -21,6 +21,12 @@ LARGEST_PORT = 65_535
 
 def _address(given: Any) -> str:
     return str(ip_address(given))
+
+
+def _named(given: Any) -> Any:
+    if given == "":
+        raise ValueError("name a folder, such as 'data'")
+    return given
 
 
 #: of a machine, as numbers
@@ -37,21 +43,15 @@ class RowSettings(SettingsTable):
         patience: after which a silent source is waited for no longer [s].
     """
 
-    every: Duration = 60.0
+    every: Duration = Field("60 s", validate_default=True)
     statistic: Literal["mean"] = "mean"
-    lateness: Duration = 600.0
-    patience: Duration = 1800.0
+    lateness: Duration = Field("10 min", validate_default=True)
+    patience: Duration = Field("30 min", validate_default=True)
 
     @property
     def grid(self) -> Grid:
         """The cells of the rows."""
         return Grid(round(self.every * MICROSECONDS), round(self.lateness * MICROSECONDS))
-
-    @model_validator(mode="after")
-    def _whole(self) -> "RowSettings":
-        if self.every < 1e-3:
-            raise ValueError("every: a row is of a millisecond at least")
-        return self
 
 
 Source = Annotated[AnySource, Field(discriminator="kind")]
@@ -64,7 +64,7 @@ class RetentionSettings(SettingsTable):
         raw: packets, once rows were made of them [s]; None: for ever.
     """
 
-    raw: Annotated[float, BeforeValidator(duration_of), Field(ge=7 * 86_400)] | None = None
+    raw: Annotated[float, Lasting("7 d", "36525 d", examples=("30 d",))] | None = None
 
 
 class TwinSettings(SettingsTable):
@@ -131,7 +131,7 @@ class ServiceSettings(SettingsTable):
     listen: Annotated[str, Field(pattern=r"^(\[[0-9a-f:]+\]|[A-Za-z0-9.-]+):\d{1,5}$")] = (
         "127.0.0.1:8471"
     )
-    data: Path = Path("data")
+    data: Annotated[Path, BeforeValidator(_named)] = Path("data")
     repository: str | None = None
     certificate: Path | None = None
     key: Path | None = None
@@ -149,8 +149,8 @@ class ServiceSettings(SettingsTable):
     def _complete(self) -> "ServiceSettings":
         if (self.certificate is None) != (self.key is None):
             raise ValueError("certificate and key come together")
-        if int(self.listen.rpartition(":")[2]) > LARGEST_PORT:
-            raise ValueError(f"listen: ports go up to {LARGEST_PORT}")
+        if not 0 < int(self.listen.rpartition(":")[2]) <= LARGEST_PORT:
+            raise ValueError(f"listen: ports go from 1 to {LARGEST_PORT}")
         if self.user_header is not None and not self.trusted_proxies:
             raise ValueError("user_header: anybody could send it; name a proxy in trusted_proxies")
         return self

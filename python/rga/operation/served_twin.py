@@ -17,7 +17,9 @@ from rga.operation.inbox.flow import bytes_a_second
 from rga.operation.inbox.known_packets import COUNTED_AGAIN
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
+from rga.operation.inbox.row_length import keep_length
 from rga.operation.packets.formats import PayloadFormat
+from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.overtaken import Overtaken
 from rga.operation.rows.remarks import ChannelRemarks
 from rga.operation.rows.sealing import Sealing
@@ -48,7 +50,7 @@ class ServedTwin:
         packets: that have come.
 
     Raises:
-        InputError: its model, its settings or a mapping cannot be used.
+        InputError: its model, its settings or a mapping cannot be used, or another twin is there.
     """
 
     def __init__(
@@ -71,12 +73,15 @@ class ServedTwin:
         self.inbox = Inbox(directory)
         grid = settings.rows.grid
         self.packets = Packets(self.inbox, grid, self._sources)
+        keep_length(self.inbox, grid.every, str(directory))
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._overtaken = Overtaken(self.packets, self._sources, clock)
         days = None if settings.retention.raw is None else settings.retention.raw / 86_400
         self.archive = PacketArchive(self.inbox, directory, days)
         self._settings, self._packet = settings, run.pace(None).packet
         self._heard = dict.fromkeys(self._sources, clock.monotonic())
+        # How old what a source sent last was when it arrived [s].
+        self._behind = dict.fromkeys(self._sources, 0.0)
         self._counted_again: dict[str, float] = {}
         # Sources that were silent when rows were last made of all that had come.
         self._sealed_for: set[str] | None = None
@@ -189,6 +194,10 @@ class ServedTwin:
         # What cannot be used moves no row on, and is waited for no longer than silence.
         if any(fate in ("waiting", "late") for fate, _ in outcomes):
             self._heard[source] = self._clock.monotonic()
+        both = zip(arrivals, outcomes, strict=True)
+        taken = [one.arrived - one.last for one, (fate, _) in both if fate == "waiting"]
+        if taken:
+            self._behind[source] = min(taken) / MICROSECONDS
         if any(why == COUNTED_AGAIN for _, why in outcomes):
             self._counted_again[source] = self._clock.monotonic()
         self._sealed_for = None
@@ -202,6 +211,19 @@ class ServedTwin:
         """How long a source has sent nothing that can be used [s]."""
         return self._clock.monotonic() - self._heard[source]
 
+    @property
+    def silent(self) -> set[str]:
+        """Sources that have sent nothing that can be used for longer than they are waited for."""
+        patience = self._settings.rows.patience
+        return {name for name in self._sources if self.silence(name) > patience}
+
+    @property
+    def backlog(self) -> float:
+        """How old what sources send is when it arrives [s]; 0: no older than they may be late."""
+        behind = max((self._behind[one] for one in {*self._sources} - self.silent), default=0.0)
+        rows = self._settings.rows
+        return behind if behind > max(rows.patience, rows.lateness) else 0.0
+
     def yearly_growth(self) -> YearlyGrowth:
         """What it takes of the disk in a year, as its sources send now.
 
@@ -213,8 +235,7 @@ class ServedTwin:
 
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
-        patience = self._settings.rows.patience
-        silent = {name for name in self._sources if self.silence(name) > patience}
+        silent = self.silent
         with self._lock:
             if silent == self._sealed_for:
                 return 0

@@ -94,14 +94,18 @@ class RealityGapAnalysis:
     def take_up_version(self) -> None:
         """Learn about a version that was put in force by hand, from the calibration's rows.
 
-        The latest rows are followed by it, so that what is asked of them next is asked of it.
+        The latest rows are followed by it, which is in doubt where it does not explain them.
         """
-        standing = self.standing
+        standing, calibration = self.standing, self._calibration
         self._design()
-        self._calibration.learn_version((0, standing.calibrated))
+        calibration.learn_version((0, standing.calibrated))
         if standing.row > standing.calibrated:
             first = standing.row - self._pace.settle if standing.since is None else standing.since
-            self._calibration.follow(max(first, standing.calibrated), standing.row)
+            recent = (max(first, standing.calibrated), standing.row)
+            calibration.follow(*recent)
+            left, rows = calibration.rows.gap(*recent, standing.share), recent[1] - recent[0]
+            usual = calibration.usual_gap(standing.calibrated, rows, standing.share)
+            standing.doubted = left > usual
 
     def gather(self) -> None:
         """Wait until enough rows are there for the first calibration."""
@@ -121,20 +125,16 @@ class RealityGapAnalysis:
         standing.interval = self._policy.interval
         standing.share = calibration.rows.scatter_share(0, standing.row)
         left = calibration.rows.gap(0, standing.row, standing.share)
-        words = [
+        words = "; ".join([
             f"calibrated on {standing.row} rows",
             *(f"{one.sensor} is left out: {one.why}" for one in stuck),
             chosen,
             *calibration.known(standing.row),
             *unsettled(left),
             *self.synchrony.warnings,
-        ]
-        self.event(
-            "calibration",
-            standing.row - 1,
-            "; ".join(words),
-            after=calibration.rows.gap(0, standing.row),
-        )
+        ])  # fmt: skip
+        after = calibration.rows.gap(0, standing.row)
+        self.event("calibration", standing.row - 1, words, after=after)
         self._keep_state(0, standing.row)
         standing.stage = "watch"
 

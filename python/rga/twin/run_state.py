@@ -44,7 +44,8 @@ class Standing(BaseModel):
         forgotten: row up to which readings were looked through for what can be forgotten.
         forgotten_rows: first row of, and row behind, stretches whose readings are forgotten.
         commanded: number of the last command that was taken from the inbox.
-        doubted: whether a recalibration did not bring the gap down and nothing has explained it.
+        doubted: whether a recalibration did not bring the gap down, or a version was put in force
+            by hand that does not explain the latest rows, and nothing has explained them.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -75,3 +76,11 @@ class Standing(BaseModel):
     forgotten_rows: tuple[tuple[int, int], ...] = ()
     commanded: int = 0
     doubted: bool = False
+
+    @property
+    def out_of_sync(self) -> bool:
+        """Whether readings have left what the model lets expect, and nothing in force explains it.
+
+        It is so while an alarm is dealt with, and where what came of it left the model in doubt.
+        """
+        return self.alarm is not None or self.doubted

@@ -204,8 +204,8 @@ class Running:
 
     @property
     def out_of_sync(self) -> bool:
-        """Whether an alarm is being dealt with."""
-        return self.analysis.standing.alarm is not None
+        """Whether readings have left what the model lets expect, and nothing explains it yet."""
+        return self.analysis.standing.out_of_sync
 
     @property
     def events(self) -> list[Event]:

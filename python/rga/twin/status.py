@@ -32,7 +32,8 @@ class Status:
         time: of the last of them, as the record writes it; None before the first.
         version: number of the model version in force.
         causes: effects that it has beyond the model as given, in words.
-        out_of_sync: whether an alarm is being dealt with.
+        out_of_sync: whether an alarm is open: readings have left what the model lets expect, and
+            nothing in force explains it.
         undecided: the proposal that nobody has decided about, in words; None: there is none.
         forgotten: first and last row of stretches whose readings are forgotten.
         acknowledged_at: wall clock at the last step, UTC, as ISO 8601 text.

@@ -192,7 +192,7 @@ class Twin:
             time=last.time_label(float(last.time[-1])) if len(last) else None,
             version=self.version,
             causes=tuple(effect_words(one) for one in effects.values()),
-            out_of_sync=standing.alarm is not None,
+            out_of_sync=standing.out_of_sync,
             undecided=self._undecided,
             forgotten=self.forgotten,
             acknowledged_at=self._view.acknowledged_at,
@@ -275,7 +275,7 @@ def carry_out(place: str | Path, command: AnyCommand, source: str | None = None)
     except InUse as error:
         if not (Path(place) / INBOX).is_file():
             raise
-        remedy = "ask it by LiveTwin(...).ask, and whoever plays it carries it out"
+        remedy = "ask the service or the program that plays it, which carries it out"
         raise InUse(error.what, error.where, remedy) from None
 
 

@@ -53,6 +53,13 @@ def test_series_is_the_record(
     np.testing.assert_allclose(gaps, expected[:, : gaps.shape[1]], rtol=1e-12)
 
 
+def test_a_series_does_not_end_before_it_begins(client: TestClient) -> None:
+    times = {"from": "2026-11-24T00:00:00Z", "to": "2026-11-23T00:00:00Z"}
+    refused = client.get(f"{EAST}/series", params=times)
+    assert (refused.status_code, refused.json()["detail"]) == (422, "query.to: it is before from")
+    answer_of(client, f"{EAST}/series", **{"from": times["to"], "to": times["from"]})
+
+
 @pytest.mark.parametrize("points", [1, 7, 60])
 def test_a_series_has_no_more_points_than_asked(client: TestClient, points: int) -> None:
     every = answer_of(client, f"{EAST}/series", points=5000)

@@ -5,13 +5,14 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
 import uvicorn
 
 from rga.dashboard.app import app_of
+from rga.dashboard.pages.times import age_words
 from rga.operation.alarms.condition import Condition, ConditionKey, Observation
 from rga.operation.service import Service
 from rga.records import Record
@@ -91,6 +92,25 @@ def opened(browser: Any, address: str) -> Iterator[Callable[..., Page]]:
     for context in contexts:
         context.close()
     assert faults == []
+
+
+@pytest.mark.parametrize(("minutes", "words"), [(22.5, "in 22 min"), (-22.5, "22 min ago")])
+def test_an_age_is_the_same_once_the_page_runs(
+    opened: Callable[..., Page], minutes: float, words: str
+) -> None:
+    page = opened()
+    page.goto("/twins/east")
+    now = datetime.now(UTC)
+    told = now + timedelta(minutes=minutes)
+    page.evaluate(
+        """time => {
+            document.querySelector("time.age").dateTime = time;
+            document.dispatchEvent(new Event("redrawn"));
+        }""",
+        told.isoformat(),
+    )
+    said = page.text_content("time.age").replace("\u00a0", " ")
+    assert said == words == age_words(told, now).replace("\u00a0", " ")
 
 
 def test_pages_fit_a_phone_and_load_little(opened: Callable[..., Page]) -> None:

@@ -188,7 +188,7 @@ def test_a_logger_may_send_below_its_twin_alone(guarded: Mosquitto, tmp_path: Pa
     ("password", "code", "words"),
     [
         ("secret of rga", 0, "warning: nothing came within 0.6 s"),
-        ("guessed", 2, "error: the broker refuses: Not authorized"),
+        ("guessed", 2, " refuses: Not authorized"),
     ],
 )
 def test_a_check_comes_in_by_the_password_of_the_service(

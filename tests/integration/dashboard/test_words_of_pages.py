@@ -89,6 +89,42 @@ def test_the_past_is_told_from_the_present_and_keeps_its_span(client: TestClient
     assert all("span=day" in one for one in hrefs)
 
 
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("?span=century", "span: there is no &#39;century&#39;: known are day, week"),
+        ("?at=soon", "at: &#39;soon&#39; is no time"),
+        ("?at=nan", "at: there is no such time"),
+        ("?at=inf", "at: there is no such time"),
+        ("/queries?kind=zz", "kind: there is no &#39;zz&#39;: known are Q1, Q2"),
+        ("/queries?until=soon", "until: &#39;soon&#39; is no time"),
+        ("/sensors?name=D1&from=2026-13-01", "from: &#39;2026-13-01&#39; is no time"),
+        ("/sensors?name=D1&from=2026-11-24T00:00&to=2026-11-23T00:00", "to: it is not after from"),
+    ],
+)
+def test_what_an_address_cannot_ask_for_is_told_of_as_a_page(
+    client: TestClient, path: str, words: str
+) -> None:
+    html = page(client, f"/twins/east{path}", 422)
+    assert "<h1>This cannot be shown</h1>" in html
+    assert words in html
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "?at=&span=month",
+        "?at=2026-11-24T00:00",
+        "/queries?kind=&until=",
+        "/queries?kind=Q5&until=2026-11-24T00:00",
+        "/sensors?name=D1&from=&to=",
+        "/sensors?name=D1&from=2026-11-23T00:00&to=2026-11-24T00:00",
+    ],
+)
+def test_what_an_address_can_ask_for_is_shown(client: TestClient, path: str) -> None:
+    page(client, f"/twins/east{path}")
+
+
 def test_a_page_that_there_is_not_is_told_of_as_a_page(
     client: TestClient,
 ) -> None:

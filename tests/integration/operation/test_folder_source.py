@@ -14,6 +14,7 @@ import pytest
 from live_streams import SETTINGS
 from rga.operation.configuration import read_configuration
 from rga.operation.inbox.account import Account
+from rga.operation.inbox.refused import refused_packets
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service import Service
 from rga.operation.sources.source import Polling
@@ -156,6 +157,48 @@ def test_what_cannot_be_used_is_refused_apart_from_the_rest(
     np.testing.assert_array_equal(rows_of(twin), expected(good))
     account = total(twin)
     assert (account.refused, account.difference) == (3, 0)
+
+
+@pytest.mark.parametrize("short", [True, False])
+@pytest.mark.parametrize("place", [0, 5, 9])
+def test_a_line_that_lacks_fields_is_refused_apart_wherever_it_stands(
+    made: Callable[..., Service], tmp_path: Path, place: int, short: bool
+) -> None:
+    twin = made().twins["east"]
+    poll, path = look(twin), tmp_path / "logger" / "a.dat"
+    lines = [line(k) for k in range(10)]
+    if short:
+        lines[place] = lines[place].rpartition(",")[0] + "\n"
+    append(path, HEAD + "".join(lines))
+    poll()
+    # Alone, and as the end of a line that is completed later.
+    cut, sent = line(10), line(11)
+    append(path, (cut[:-5] if not short else cut.rpartition(",")[0] + "\n"))
+    poll()
+    append(path, (cut[-5:] if not short else "") + sent)
+    poll()
+    good = [k for k in range(12) if not (short and k in (place, 10))]
+    np.testing.assert_array_equal(rows_of(twin), expected(good))
+    account = total(twin)
+    assert (account.refused, account.difference) == (2 if short else 0, 0)
+    told = refused_packets(twin.inbox, 9)
+    said = "the line has 3 fields, the header has 4"
+    assert [said in one.reason for one in told] == [True] * account.refused
+    assert all(one.reason.startswith("a.dat: ") for one in told)
+
+
+@pytest.mark.parametrize(
+    ("values", "fate"), [("1.5,2.5", "waiting"), ("1.5", "refused"), ("1,2,3", "refused")]
+)
+def test_a_line_of_csv_that_is_sent_has_as_many_fields_as_its_header(
+    made: Callable[..., Service], values: str, fate: str
+) -> None:
+    twin = made().twins["east"]
+    payload = f"time,D1,D2\n2026-11-23T00:00:00Z,{values}\n".encode()
+    ((found, why),) = twin.receive("folder", [("a", payload)], kind="file")
+    assert found == fate
+    assert (fate == "refused") == ("fields, the header has 3" in (why or ""))
+    assert total(twin).difference == 0
 
 
 def test_an_hour_that_exists_twice_is_refused_and_the_rest_used(

@@ -2,6 +2,8 @@
 
 import json
 import time
+from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import accumulate
 from pathlib import Path
@@ -40,14 +42,18 @@ class Listener:
         self._client.disconnect()
         self._client.loop_stop()
 
-    def _take(self, client: Client, _: Any, message: Any) -> None:
+    def _take(self, _client: Client, _: Any, message: Any) -> None:
         self.came.append(int(message.payload))
         if not self._answers:
             return
         next_ = max(self.came) + 1
         missing = [(k, k) for k in range(next_) if k not in self.came]
+        self.acknowledge(next_, missing)
+
+    def acknowledge(self, next_: int, missing: Sequence[tuple[int, int]] = ()) -> None:
+        """Say that all below a number is kept, but for what is missing."""
         said = {"stream": "s", "next": next_, "missing": missing}
-        client.publish(self._ack, json.dumps(said), qos=1)
+        self._client.publish(self._ack, json.dumps(said), qos=1)
 
 
 @pytest.mark.parametrize("later", [0.0, 1.5], ids=["before the logger", "after it"])
@@ -110,3 +116,25 @@ def test_a_service_that_never_acknowledges_is_told_of_once(
     listener.stop()
     assert len(told) == 1
     assert "the source 'logger' of twin 'east' is waited for" in told[0]
+
+
+def test_a_slow_service_is_sent_nothing_many_times(
+    mosquitto: Mosquitto, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A broker drops what waits there beyond a thousand, and be it sent for the first time."""
+    monkeypatch.setattr(senders, "UNACKNOWLEDGED", 0.05)
+    sender = BrokerSender(f"{mosquitto.url}/{TOPIC}")
+    listener = Listener(mosquitto.port, answers=False)
+    for k in range(12):
+        sender.send(str(k).encode(), Number("s", k))
+    with ThreadPoolExecutor() as pool:
+        finishing = pool.submit(sender.finish)
+        for k in range(12):
+            time.sleep(0.3)
+            listener.acknowledge(k + 1)
+        finishing.result()
+    listener.stop()
+    # Once, once more, and while it is the first of those that wait.
+    copies = Counter(listener.came)
+    assert set(copies) == set(range(12))
+    assert max(copies.values()) <= 4

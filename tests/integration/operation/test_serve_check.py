@@ -19,6 +19,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 from typer.testing import CliRunner
 
 from rga.cli.app import app
+from rga.errors import InputError
 from rga.model import Model, load_model
 from rga.operation.configuration import read_configuration
 from rga.operation.disk import room as disk_room
@@ -303,6 +304,15 @@ def test_what_was_kept_goes_with_the_files_or_is_told(
     assert code == 2
     assert "a live twin that differs in seed is here" in said
     assert "note: its repository is brought up to date at the start" in said
+    assert "LiveTwin" not in said
+    every = 'every = "600 s"'
+    assert every in text
+    (tmp_path / "serve.toml").write_text(text.replace(every, 'every = "30 min"'), "utf-8")
+    code, said = checked(tmp_path)
+    assert code == 2
+    assert "a live twin of rows of 10 min is here, and rows.every is 30 min" in said
+    with pytest.raises(InputError, match="state rows of 10 min, or take another directory"):
+        Service(read_configuration(tmp_path / "serve.toml"))
 
 
 @pytest.fixture
@@ -385,4 +395,4 @@ def test_a_broker_that_is_away_is_told(mosquitto: Mosquitto, model: Model, tmp_p
     use_broker(tmp_path, mosquitto)
     code, said = checked(tmp_path)
     assert code == 2
-    assert "the broker cannot be reached" in said
+    assert f"the broker mqtt://127.0.0.1:{mosquitto.port} cannot be reached" in said

@@ -283,7 +283,7 @@ def test_a_plan_begins_with_what_the_findings_advise(
     taken = set()
     for stand in ("1.50 m (node L1)", "3.75 m (node L2)", "6.00 m (node L3)"):
         begin = advice.index("the first at ") + len("the first at ")
-        words = advice.replace(advice[begin : advice.index(", [kN]")], stand)
+        words = advice.replace(advice[begin : advice.index(")", begin) + 1], stand)
         planned = plan(model, advising(findings, words), sensors=1, positions=1)
         (one,), (test,) = planned.advised, planned.tests
         assert one.planned
@@ -301,7 +301,8 @@ def test_a_truck_at_either_end_of_its_path_separates_as_far(
     model, findings = soft_or_heavy
     separations = []
     for stand in ("1.50 m (node L1)", "6.00 m (node L3)"):
-        words = f"a load test, known weights with the first at {stand}, [kN] @ [m] 100,100@1.5, "
+        words = f"a load test, known weights with the first at {stand}, "
+        words += "100 and 100 kN, 1.5 m apart, "
         (one,) = plan(model, advising(findings, words), sensors=0, positions=1).advised
         separations.append(one.d_perp)
     assert separations[0] == pytest.approx(separations[1], rel=0.1)

@@ -1,5 +1,6 @@
 """Channels that are broken from the first row, on the sample of the footbridge."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 import rga
 from documentation import ROOT
 from rga.errors import InputError
+from rga.model.io import read_model
 from rga.records import Record
 from rga.twin import Outcome, Settings
 
@@ -103,3 +105,22 @@ def test_a_channel_that_comes_later_stops_nothing(
     )
     assert not outcome.findings.causes
     assert len(outcome.history.versions) == 1
+
+
+@pytest.mark.parametrize("measured", ["always", "late", "never"])
+def test_a_calibration_says_of_which_contexts_no_value_came(
+    measured: str, sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    record = sample[1]
+    content = json.loads((SAMPLE / "model.json").read_text("utf-8"))
+    content["context"]["rain"] = {"range": [0.0, 3.0], "unit": "kN/m"}
+    rain = np.full(len(record), 0.5)
+    if measured == "late":
+        rain[: BEFORE // 2] = np.nan
+    contexts = dict(record.contexts) | ({} if measured == "never" else {"rain": rain})
+    some = replace(record, contexts=contexts).rows(slice(0, BEFORE))
+    outcome = rga.run(read_model(content, "sample"), some, tmp_path, settings=SETTINGS)
+    (calibration,) = words(outcome, "calibration")
+    assert ("; all contexts are measured" in calibration) == (measured == "always")
+    lacking = "contexts are measured, but no value came of rain"
+    assert (lacking in calibration) == (measured != "always")

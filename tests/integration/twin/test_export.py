@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rga import Model, Twin, load_model, load_record
+from rga.jobs.begin import begun
 from rga.records import Record
 from rga.twin import Settings
 from rga.twin.runner import taken_up
@@ -23,6 +24,17 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     draw_case(1028, rows=160).write(folder)
     model = load_model(folder / "model.json")
     return model, load_record(folder / "record.csv", model)
+
+
+def test_a_twin_that_has_no_rows_yet_says_so(
+    case: Case, tmp_path: Path, rga: Callable[..., Any]
+) -> None:
+    settings = Settings(level="A", calibration_rows=60, packet=20, settle=40)
+    begun(case[0], tmp_path / "live", settings=settings)
+    told = rga("export", tmp_path / "live", "-o", tmp_path / "live.csv")
+    assert told.code == 2
+    assert "the twin has no rows yet" in told.err
+    assert "no such file" in rga("export", tmp_path, "-o", tmp_path / "live.csv").err
 
 
 def played(case: Case, place: Path, rows: int) -> None:

@@ -101,4 +101,6 @@ def test_an_address_that_is_none_is_told(listen: str) -> None:
     with pytest.raises(InputError, match="nothing can listen there") as refused:
         listening_socket(ServiceSettings(listen=listen))
     assert repr(listen) in str(refused.value)
-    listening_socket(ServiceSettings(listen="127.0.0.1:0")).close()
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    listening_socket(ServiceSettings(listen=f"127.0.0.1:{port}")).close()

@@ -1,6 +1,7 @@
 """The lines above the rows of files that grow: every row is read by those that it has."""
 
 import json
+import os
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -24,6 +25,8 @@ class Read:
     def __init__(self, folder: Path, mapping: RecordMapping | None = None) -> None:
         self._path, self._finder = folder, HeadFinder(mapping or RecordMapping(), {"D1", "D2"})
         self.read: list[tuple[bytes, bytes]] = []
+        self.whole: list[tuple[str, bytes]] = []
+        self.takes_whole = False
         self.kept: dict[str, Any] = {}
         self.start()
 
@@ -33,7 +36,10 @@ class Read:
         self.folder = Folder(self._path, "*", self._finder, known)
 
     def receive(self, payloads: Any, cursor: Any = None) -> list[Outcome]:
-        raise AssertionError("these files have lines")
+        assert self.takes_whole, "these files have lines"
+        self.whole += payloads
+        self.kept |= cursor
+        return []
 
     def receive_lines(self, where: str, head: bytes, lines: bytes, cursor: Any) -> list[Outcome]:
         self.read += [(head, line) for line in lines.splitlines()]
@@ -138,3 +144,49 @@ def test_a_file_in_which_no_row_is_found_is_told(tmp_path: Path) -> None:
     append(tmp_path / "a.csv", b"nothing that is a row\n" * 30)
     assert "no row is found in it" in str(rows.look())
     assert rows.read == []
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What rests is waited for until it is there at two looks."""
+    monkeypatch.setattr("rga.operation.sources.folder.ENDLESS", 0.0)
+
+
+def test_a_file_that_ends_within_its_stated_head_is_given_as_a_whole_once(
+    tmp_path: Path, patient: None
+) -> None:
+    read = Read(tmp_path, RecordMapping(header_line=3))
+    read.takes_whole = True
+    append(tmp_path / "a.csv", b"1,5\n2,6\n")
+    # Nothing else is there: its logger may still write the head, and it is told that it waits.
+    assert read.look() is None
+    assert read.look() == "a.csv: it ends within the lines above its rows"
+    assert read.whole == []
+    os.utime(tmp_path / "a.csv", (1, 1))
+    append(tmp_path / "b.csv", b"Logger X\n\ntime,D1\n0,1\n")
+    for _ in range(3):
+        assert read.look() is None
+    read.start()
+    for _ in range(3):
+        assert read.look() is None
+    assert read.whole == [("a.csv", b"1,5\n2,6\n")]
+    assert [line for _, line in read.read] == [b"0,1"]
+    # A head that is completed after all has rows.
+    append(tmp_path / "a.csv", b"time,D1\n3,7\n")
+    read.look()
+    assert read.read[-1] == (b"1,5\n2,6\ntime,D1\n", b"3,7")
+    assert len(read.whole) == 1
+
+
+def test_a_file_that_has_its_head_and_no_row_yet_waits(tmp_path: Path, patient: None) -> None:
+    read = Read(tmp_path, RecordMapping(header_line=3))
+    for name in "ab":
+        append(tmp_path / f"{name}.csv", b"Logger X\n\ntime,D1\n")
+    for _ in range(3):
+        assert read.look() is None
+    append(tmp_path / "a.csv", b"0,1\n")
+    assert read.look() is None
+    assert [line for _, line in read.read] == [b"0,1"]
+    # One that is being written waits without a word.
+    append(tmp_path / "c.csv", b"Logger X\n")
+    assert read.look() is None

@@ -304,3 +304,34 @@ def test_line_protocol_has_no_head(tmp_path: Path) -> None:
     rows.folder = Folder(tmp_path, "*", ONE_LINE)
     append(tmp_path / "a", b"air v=1 1795392000\n")
     assert rows.look() == [b"air v=1 1795392000"]
+
+
+@pytest.mark.parametrize("is_file", [True, False])
+def test_links_that_lead_out_of_the_folder_are_not_followed(tmp_path: Path, is_file: bool) -> None:
+    logger, other = tmp_path / "logger", tmp_path / "other"
+    logger.mkdir()
+    other.mkdir()
+    append(logger / "a.csv", HEAD + b"0,1\n")
+    append(other / "secret.csv", HEAD + b"1,2\n")
+    link = logger / ("b.csv" if is_file else "b")
+    link.symlink_to(other / "secret.csv" if is_file else other)
+    rows = Rows(logger, "*.csv" if is_file else "*/*.csv")
+    assert rows.look() == ([b"0,1"] if is_file else [])
+    name = "b.csv" if is_file else "b/secret.csv"
+    assert rows.fault == f"{name}: it is a link that leads out of the folder: not followed"
+    link.unlink()
+    rows.look()
+    assert rows.fault is None
+
+
+def test_links_within_the_folder_are_followed_also_where_it_is_a_link_itself(
+    tmp_path: Path,
+) -> None:
+    logger = tmp_path / "disk"
+    logger.mkdir()
+    append(logger / "kept.txt", HEAD + b"0,1\n")
+    (logger / "a.csv").symlink_to(logger / "kept.txt")
+    (tmp_path / "logger").symlink_to(logger)
+    rows = Rows(tmp_path / "logger", "*.csv")
+    assert rows.look() == [b"0,1"]
+    assert rows.fault is None

@@ -72,6 +72,23 @@ def test_a_number_that_comes_again_with_other_times_is_refused(tmp_path: Path) -
     assert total(packets) == Account(received=8, waiting=3, duplicate=2, refused=3)
 
 
+def test_a_number_that_comes_again_with_other_content_is_refused(tmp_path: Path) -> None:
+    packets = Packets(Inbox(tmp_path), PATIENT, SOURCES)
+    one, other = numbered(0, sha256="one"), numbered(0, sha256="other")
+    assert fates(packets, "east", [one, one, other]) == ["waiting", "duplicate", "refused"]
+    (fate, why), same = packets.receive("east", [other, one])
+    assert (fate, why) == ("refused", "stream a, packet 0 came before with other content")
+    assert same == ("duplicate", None)
+    assert fates(packets, "west", [other]) == ["waiting"]
+    # Of what an older rga has kept nobody knows the content.
+    assert fates(packets, "east", [numbered(1), numbered(1, sha256="x")]) == [
+        "waiting", "duplicate",
+    ]  # fmt: skip
+    account = total(packets)
+    assert account == Account(received=8, waiting=3, duplicate=3, refused=2)
+    assert account.difference == 0
+
+
 def test_what_went_to_the_archive_is_told_from_another_by_its_age(tmp_path: Path) -> None:
     inbox = Inbox(tmp_path)
     packets = Packets(inbox, PATIENT, SOURCES)

@@ -31,6 +31,7 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
 
     if is_service(place):
         raise _not_of_a_service(place)
+    _check_has_rows(Path(place))
     with Repository.open(place, read_only=True) as repository:
         view = repository.latest()
         record, damaged = whole_record(view)
@@ -51,6 +52,21 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
     typer.echo(
         f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."
     )
+
+
+def _check_has_rows(place: Path) -> None:
+    """Whether the twin of a directory, if a live one is there, has taken in rows.
+
+    Raises:
+        InputError: it has none yet.
+    """
+    from rga.errors import InputError
+    from rga.twin.hardware.inbox import INBOX
+    from rga.twin.repository.database import FILE_NAME
+
+    if (place / INBOX).is_file() and not (place / FILE_NAME).is_file():
+        what = "the twin has no rows yet"
+        raise InputError(what, str(place), "wait until it has taken in its first packet")
 
 
 def _not_of_a_service(place: str) -> "InputError":

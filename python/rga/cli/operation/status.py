@@ -53,9 +53,9 @@ def _show_served(place: str, json: str | None) -> None:
     else:
         last = f", the last of {now['time']}" if now["time"] else ""
         causes = f" with {', '.join(now['causes'])}" if now["causes"] else ""
-        state = "; out of sync" if now["out_of_sync"] else ""
         typer.echo(f"{client.twin}: {counted(now['rows'], 'row')}{last}; {NEXT[now['stage']]}.")
-        typer.echo(f"Model version {now['version']}{causes} is in force{state}.")
+        typer.echo(f"Model version {now['version']}{causes} is in force.")
+        typer.echo(f"State: {found['state']}. {found['words']}")
         if now["undecided"] is not None:
             typer.echo(f"Undecided: proposal {now['undecided']['number']}, ", nl=False)
             typer.echo(f"{now['undecided']['words']}.")

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Body, Depends, HTTPException, Path, Query, Request
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from rga.dashboard.access.may import may, may_see_some
 from rga.dashboard.access.roles import Right, Who
@@ -70,9 +70,7 @@ class Shelving(Reason):
 
     why: Annotated[Why, Field(min_length=1)]
     until: Moment | None = None
-    span: Annotated[
-        Duration | None, WithJsonSchema({"type": "string", "examples": ["8 h", "2 d"]})
-    ] = Field(None, alias="for")
+    span: Duration | None = Field(None, alias="for")
 
     @model_validator(mode="after")
     def _ends(self) -> "Shelving":

@@ -9,13 +9,19 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from prometheus_client import CollectorRegistry
 from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
-from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.metrics_core import (
+    CounterMetricFamily,
+    GaugeMetricFamily,
+    Metric,
+    StateSetMetricFamily,
+)
 from starlette.responses import Response
 
 from rga.dashboard.access.may import may_see_some
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.served import answering, surroundings_of
 from rga.dashboard.surroundings import SeenTwin, Surroundings
+from rga.dashboard.twin_health import STATES, health_of
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.twin.hardware.inbox import INBOX
@@ -48,6 +54,7 @@ class _Numbers:
 
     def collect(self) -> Iterator[Metric]:
         """All of them."""
+        states = StateSetMetricFamily("rga_state", "1 for how the twin is", labels=["twin"])
         readable = _gauge("rga_twin_readable", "1 where the repository of the twin can be read")
         row_age = _gauge("rga_row_age_seconds", "Age of the last row that the twin has taken in")
         step_age = _gauge("rga_step_age_seconds", "Time since the twin did something")
@@ -76,8 +83,10 @@ class _Numbers:
                 now, view = seen.reading.now(), seen.reading.view()
             except InputError:
                 readable.add_metric(name, 0)
+                states.add_metric(name, _only("damaged"))
                 continue
             readable.add_metric(name, 1)
+            states.add_metric(name, _only(health_of(seen, now).word))
             lag.add_metric(name, seen.lag(now))
             if now is None or view is None:
                 continue
@@ -87,12 +96,17 @@ class _Numbers:
                 row_age.add_metric(name, _age(now.time))
             if now.gap is not None:
                 gap.add_metric(name, now.gap)
-        yield from (readable, row_age, step_age, lag, gap, steps, faults, inbox, disk)
+        yield from (states, readable, row_age, step_age, lag, gap, steps, faults, inbox, disk)
         yield from (packets, waiting)
 
 
 def _gauge(name: str, words: str) -> GaugeMetricFamily:
     return GaugeMetricFamily(name, words, labels=["twin"])
+
+
+def _only(word: str) -> dict[str, bool]:
+    """Of all states of a twin the one that it is in."""
+    return {state: state == word for state in STATES}
 
 
 def _age(moment: datetime) -> float:

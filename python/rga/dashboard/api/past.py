@@ -12,6 +12,7 @@ from rga.dashboard.access.may import may
 from rga.dashboard.api.known_query import KnownQueryRoute
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin
+from rga.dashboard.in_force import SpanInForce, spans_in_force
 from rga.dashboard.surroundings import SeenTwin
 from rga.findings.phrases import effect_words
 from rga.operation.disk.forecast import DiskForecast
@@ -44,6 +45,7 @@ class VersionAnswer:
         causes: what it has beyond the model as given, in words.
         gain, gain_ci90: on held-out rows, with its 90 % interval [-].
         in_force: whether it is.
+        spans: in which it was in force, the first first.
     """
 
     number: int
@@ -52,6 +54,7 @@ class VersionAnswer:
     gain: float | None
     gain_ci90: tuple[float, float] | None
     in_force: bool
+    spans: list[SpanInForce]
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,7 @@ def versions(seen: TheTwin) -> list[VersionAnswer]:
     """Versions of the model."""
     view = _view(seen)
     in_force = view.version_in_force()
+    spans = spans_in_force(view, begun_twin(seen).station.start)
     return [
         VersionAnswer(
             version.number,
@@ -143,6 +147,7 @@ def versions(seen: TheTwin) -> list[VersionAnswer]:
             version.gain,
             version.gain_ci90,
             in_force is not None and version.number == in_force.number,
+            spans.get(version.number, []),
         )
         for version in view.versions()
     ]

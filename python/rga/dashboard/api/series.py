@@ -68,6 +68,8 @@ def series(
     chosen = tuple(dict.fromkeys(known if channels is None else channels))
     if unknown := [name for name in chosen if name not in known]:
         raise HTTPException(422, f"there is no sensor {unknown[0]!r}")
+    if begin is not None and end is not None and end < begin:
+        raise HTTPException(422, "query.to: it is before from")
     # Of each sensor three columns, of each context one, of three numbers each.
     width = 9 * len(chosen) + 3 * len(twin.given.context)
     found = reading.series(

@@ -19,6 +19,7 @@ from rga.dashboard.api.served import (
     surroundings_of,
 )
 from rga.dashboard.surroundings import SeenTwin, Surroundings
+from rga.dashboard.twin_health import health_of
 from rga.operation.reading.twin_now import TwinNow
 
 router = APIRouter(prefix=PREFIX, tags=["twins"], route_class=KnownQueryRoute)
@@ -30,6 +31,9 @@ class ServedState:
 
     Attributes:
         name: of it.
+        state: how it is in a word, the same as its pages say: alarm, to decide, not watched,
+            silent, behind, learning, no rows yet, or in step.
+        words: the same in a sentence.
         now: where it stands; None before its first rows.
         age: of its last row [s].
         lag: rows that have come and were not played yet.
@@ -37,6 +41,8 @@ class ServedState:
     """
 
     name: str
+    state: str
+    words: str
     now: TwinNow | None
     age: float | None
     lag: int
@@ -48,7 +54,10 @@ def state_of_twin(seen: SeenTwin) -> ServedState:
     now = seen.reading.now()
     time = None if now is None else now.time
     age = None if time is None else (datetime.now(UTC) - time).total_seconds()
-    return ServedState(seen.name, now, age, seen.lag(now), dict(seen.faults))
+    health = health_of(seen, now)
+    return ServedState(
+        seen.name, health.word, health.words, now, age, seen.lag(now), dict(seen.faults)
+    )
 
 
 @router.get("/twins", responses=answering())

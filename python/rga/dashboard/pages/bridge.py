@@ -7,12 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from rga.dashboard.in_force import in_force
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading, heading_as_of
-from rga.dashboard.pages.in_force import in_force
-from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
-from rga.dashboard.pages.times import age_words, given_moment, of_event
-from rga.dashboard.pages.windows import SPANS, asked_span, chosen_window
+from rga.dashboard.pages.sensors_now import farthest_first, out_of_use_words, sensor_rows
+from rga.dashboard.pages.times import age_words, of_event
+from rga.dashboard.pages.windows import (
+    SPANS,
+    NotUnderstood,
+    asked_moment,
+    asked_span,
+    chosen_window,
+)
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
@@ -57,6 +63,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
 
     Raises:
         InputError: its repository cannot be read.
+        NotUnderstood: there is no such time or stretch of it.
     """
     latest, twin = seen.reading.now(), seen.reading.twin
     found: dict[str, Any] = {"heading": heading(seen, latest), "tab": ""}
@@ -95,6 +102,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
         "gap": None if now.recent is None else number(now.recent, 2),
         "level_now": gap_level(now.recent),
         "age": age_words(now.time, Surroundings.now()),
+        "out_of_use": out_of_use_words(now),
         "rows": rows,
         "sensor_of": {one.number: one for one in rows},
         "ranked": farthest_first(rows),
@@ -111,16 +119,19 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
 
 
 def asked_time(query: Mapping[str, str], start: datetime) -> float | None:
-    """Seconds from the first row to the time that an address asks for; None: it asks for none."""
-    text = query.get("at", "")
-    moment = given_moment(text)
-    if moment is not None:
-        return max(0.0, (moment - start).total_seconds())
+    """Seconds from the first row to the time that an address asks for; None: it asks for none.
+
+    Raises:
+        NotUnderstood: it asks for what is neither a time nor seconds.
+    """
     try:
-        seconds = float(text)
+        seconds = float(query.get("at", ""))
     except ValueError:
-        return None
-    return max(0.0, seconds) if np.isfinite(seconds) else None
+        moment = asked_moment(query, "at")
+        return None if moment is None else max(0.0, (moment - start).total_seconds())
+    if not np.isfinite(seconds):
+        raise NotUnderstood("at: there is no such time")
+    return max(0.0, seconds)
 
 
 def context_words(value: float, spread: float, unit: str, measured: bool) -> str:
@@ -167,8 +178,10 @@ def _versions(seen: SeenTwin, window: Window, now: TwinNow) -> list[VersionStret
     assert view is not None  # it has begun
     assert now.time is not None
     found = []
-    for one in in_force(view, min(seen.reading.elapsed(now.time), window.end)):
-        left, right = (min(100.0, max(0.0, window.share(end))) for end in (one.begin, one.end))
+    last = min(seen.reading.elapsed(now.time), window.end)
+    for one in in_force(view):
+        ends = one.begin, one.until(last)
+        left, right = (min(100.0, max(0.0, window.share(end))) for end in ends)
         if right > left:
             found.append(VersionStretch(one.version, round(left, 2), round(right - left, 2)))
     return found

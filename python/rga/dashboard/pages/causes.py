@@ -88,6 +88,15 @@ class Proposed:
     warnings: list[str]
 
 
+@dataclass(frozen=True)
+class Unexplained:
+    """Diagnoses that ended in "unknown": how many, when the last did, and what it said."""
+
+    count: int
+    time: datetime
+    sentence: str
+
+
 def causes_page(seen: SeenTwin) -> dict[str, Any]:
     """What the page of causes shows.
 
@@ -95,13 +104,20 @@ def causes_page(seen: SeenTwin) -> dict[str, Any]:
         InputError: the repository of the twin cannot be read.
     """
     now, view, twin = seen.reading.now(), seen.reading.view(), seen.reading.twin
-    found = {"heading": heading(seen, now), "tab": "/causes", "version": 0, "proposals": []}
+    found: dict[str, Any] = {
+        "heading": heading(seen, now),
+        "tab": "/causes",
+        "version": 0,
+        "unexplained": None,
+        "proposals": [],
+    }
     if now is None or view is None or twin is None:
         return found
     start = twin.station.start
     proposals = view.proposals()
     return found | {
         "version": now.version,
+        "unexplained": _unexplained(view, start),
         "proposals": [
             _proposed(one, one is proposals[-1], view, twin.given, start)
             for one in reversed(proposals)
@@ -120,6 +136,19 @@ def findings_of(view: RunView, number: int) -> str:
     if text is None:
         raise KeyError(number)
     return text
+
+
+def _unexplained(view: RunView, start: str | float) -> Unexplained | None:
+    """What came of diagnoses that named nothing they know; None: none ended so."""
+    ended = [(one.row, Findings.model_validate_json(one.findings)) for one in view.findings()]
+    unknown = [(row, found) for row, found in ended if found.verdict == "unknown"]
+    if not unknown:
+        return None
+    row, last = unknown[-1]
+    time = view.measured_at([row]).time
+    return Unexplained(
+        len(unknown), moment(start, float(time[0]) if len(time) else 0.0), last.sentence()
+    )
 
 
 def _stored(view: RunView, proposal: Proposal) -> str | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from rga.dashboard.alarm_desk import SHELVES, UNSEEN, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
+from rga.dashboard.pages.sensors_now import out_of_use_words
 from rga.dashboard.pages.times import DAY, age_words
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import Window, sparkline
@@ -33,6 +34,7 @@ class BridgeCard:
         drawing: of the structure.
         gap, level: of the last rows, in words.
         line: path of the gap over 30 days.
+        out_of_use: how many sensors are not watched, in words; empty: all are.
         version: of the model that is in force; 0: none.
         alarms: that are open, as the page of alarms lists them.
         unseen: those of them that nobody has acknowledged or put on a shelf.
@@ -45,6 +47,7 @@ class BridgeCard:
     gap: str
     level: GapLevel
     line: str
+    out_of_use: str
     version: int
     alarms: int
     unseen: int
@@ -102,6 +105,7 @@ def _readable(seen: SeenTwin) -> BridgeCard:
         gap="" if now.recent is None else number(now.recent, 2),
         level=gap_level(now.recent),
         line=line,
+        out_of_use=out_of_use_words(now),
         version=now.version,
         alarms=len(alarms),
         unseen=_unseen(alarms),
@@ -118,6 +122,7 @@ def _empty(seen: SeenTwin, top: Heading) -> BridgeCard:
         gap="",
         level=gap_level(None),
         line="",
+        out_of_use="",
         version=0,
         alarms=len(alarms),
         unseen=_unseen(alarms),

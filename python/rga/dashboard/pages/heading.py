@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from rga.dashboard.pages.state import TwinHealth, damaged, state_of
-from rga.dashboard.surroundings import SeenTwin, Surroundings
+from rga.dashboard.surroundings import Feed, SeenTwin
+from rga.dashboard.twin_health import TwinHealth, damaged, health_of, state_of
 from rga.errors import InputError
 from rga.operation.reading.twin_now import TwinNow
 from rga.twin.commands.command import AnyCommand, Command
@@ -44,18 +44,16 @@ def heading(seen: SeenTwin, now: TwinNow | None) -> Heading:
     return Heading(
         seen.name,
         seen.served.model.name,
-        state_of(now, Surroundings.now(), seen.patience, seen.lag(now)),
+        health_of(seen, now),
         tuple(map(command_words, seen.waiting())),
     )
 
 
 def heading_as_of(seen: SeenTwin, then: TwinNow | None, latest: TwinNow) -> Heading:
     """The heading of a twin as it stood at a time, beside how it is now."""
-    moment = Surroundings.now() if then is None or then.time is None else then.time
-    # What was late or silent then is not kept: the state is that of its rows.
-    state = state_of(then, moment, seen.patience, 0)
     now = heading(seen, latest)
-    return replace(now, state=state, waiting=(), state_now=now.state)
+    # What was late or silent then is not kept: the state is that of its rows.
+    return replace(now, state=state_of(then, Feed()), waiting=(), state_now=now.state)
 
 
 def heading_of_damaged(seen: SeenTwin, error: InputError) -> Heading:

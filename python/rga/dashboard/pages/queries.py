@@ -7,7 +7,7 @@ from datetime import datetime
 from typing import Any
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.times import given_moment
+from rga.dashboard.pages.windows import asked_choice, asked_moment
 from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import moment
 from rga.twin.history import Event
@@ -57,10 +57,10 @@ def queries_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
 
     Raises:
         InputError: the repository of the twin cannot be read.
+        NotUnderstood: there is no such kind or time.
     """
     now, view, twin = seen.reading.now(), seen.reading.view(), seen.reading.twin
-    kind = query.get("kind", "") if query.get("kind", "") in KINDS else ""
-    until = given_moment(query.get("until", ""))
+    kind, until = asked_choice(query, "kind", KINDS, ""), asked_moment(query, "until")
     found: dict[str, Any] = {
         "heading": heading(seen, now),
         "tab": "/queries",

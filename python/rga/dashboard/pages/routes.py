@@ -23,6 +23,7 @@ from rga.dashboard.pages.queries import queries_page
 from rga.dashboard.pages.rendering import rendered
 from rga.dashboard.pages.sensor import sensor_page, sensors_page
 from rga.dashboard.pages.versions import versions_page
+from rga.dashboard.pages.windows import NotUnderstood
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
 
@@ -143,6 +144,8 @@ def _page(
         return rendered(template, page(), who, live=live)
     except KeyError as error:
         raise HTTPException(404, f"there is no {error.args[0]!r}") from None
+    except NotUnderstood as error:
+        raise HTTPException(422, str(error)) from None
     except InputError as error:
         shown = {
             "heading": heading_of_damaged(seen, error),

@@ -10,7 +10,12 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.sensors_now import SensorRow, farthest_first, sensor_rows
+from rga.dashboard.pages.sensors_now import (
+    SensorRow,
+    farthest_first,
+    out_of_use_words,
+    sensor_rows,
+)
 from rga.dashboard.pages.times import utc_words
 from rga.dashboard.pages.windows import SPANS, ChosenWindow, chosen_window
 from rga.dashboard.surroundings import SeenTwin
@@ -47,6 +52,7 @@ def sensors_page(seen: SeenTwin) -> dict[str, Any]:
         "tab": "/sensors",
         "rows": farthest_first(rows),
         "version": 0 if now is None else now.version,
+        "out_of_use": "" if now is None else out_of_use_words(now),
     }
 
 
@@ -61,6 +67,7 @@ def sensor_page(seen: SeenTwin, name: str, query: Mapping[str, str]) -> dict[str
     Raises:
         KeyError: the twin has no such sensor.
         InputError: the repository of the twin cannot be read.
+        NotUnderstood: there is no such stretch of time.
     """
     now, twin, view = seen.reading.now(), seen.reading.twin, seen.reading.view()
     if now is None or twin is None or view is None or name not in now.sensors:

@@ -3,10 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from rga.dashboard.svg.gap_level import UNKNOWN, GapLevel, gap_level
+from rga.dashboard.svg.gap_level import OUT_OF_USE, UNKNOWN, GapLevel, gap_level
 from rga.model.schema import Model
 from rga.operation.reading.twin_now import SensorNow, TwinNow
-from rga.quantities import DASH, number, scale, short
+from rga.quantities import DASH, counted, number, scale, short
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class SensorRow:
         place: where it sits, in words.
         measured, simulated, difference, noise: of the last row, in its unit.
         gap, level: over the last rows.
-        recent: the gap as a number [-]; None: it is not known.
+        recent: the gap as a number [-]; None: it is not known, or the sensor is out of use.
         words: all this in a line.
     """
 
@@ -41,7 +41,7 @@ class SensorRow:
 def sensor_rows(model: Model, now: TwinNow) -> list[SensorRow]:
     """The sensors of a twin in the order of its model."""
     return [
-        _row(place, name, model, now.sensors[name])
+        _row(place, name, model, now.sensors[name], name not in now.out_of_use)
         for place, name in enumerate(model.sensors)
         if name in now.sensors
     ]
@@ -58,7 +58,16 @@ def place_words(model: Model, name: str) -> str:
     return f"on member {sensor.member}" if sensor.member is not None else f"at node {sensor.node}"
 
 
-def _row(place: int, name: str, model: Model, one: SensorNow) -> SensorRow:
+def out_of_use_words(now: TwinNow) -> str:
+    """How many sensors are not watched, in words; nothing where all are."""
+    out = len(now.out_of_use)
+    if not out:
+        return ""
+    are = "is" if out == 1 else "are"
+    return f"{out} of {counted(len(now.sensors), 'sensor')} {are} out of use"
+
+
+def _row(place: int, name: str, model: Model, one: SensorNow, is_used: bool) -> SensorRow:
     sensor = model.sensors[name]
     # All values of a sensor are said in the unit that suits the largest of them.
     largest = max(abs(one.measured or 0.0), abs(one.simulated or 0.0))
@@ -70,8 +79,8 @@ def _row(place: int, name: str, model: Model, one: SensorNow) -> SensorRow:
         DASH if value is None else short(value * factor)
         for value in (one.measured, one.simulated, apart, one.noise)
     )
-    level = gap_level(one.recent)
-    recent = None if level is UNKNOWN else one.recent
+    level = gap_level(one.recent) if is_used else OUT_OF_USE
+    recent = None if level in (UNKNOWN, OUT_OF_USE) else one.recent
     gap = DASH if recent is None else number(recent, 2)
     words = (
         f"{name}, {sensor.kind} {place_words(model, name)}: measured {measured}, simulated "

@@ -2,17 +2,15 @@
 
 import json
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
 import numpy as np
 
+from rga.dashboard.in_force import InForce, SpanInForce, in_force, spans_in_force
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.in_force import BEHIND, InForce, first_in_force, in_force
 from rga.dashboard.surroundings import SeenTwin
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.findings.phrases import effect_words
-from rga.operation.reading.twin_now import moment
 from rga.operation.reading.twin_reading import TwinReading
 from rga.quantities import DASH, number
 from rga.report.figures.of_run.run_gap import mean
@@ -20,6 +18,8 @@ from rga.twin.repository import ModelVersion
 
 #: entries of which the gap under a version is a mean
 ENTRIES = 64
+#: by which the rows of a stretch lie behind the row at which its version came into force [s]
+BEHIND = 1e-3
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class VersionRow:
 
     Attributes:
         number: of it.
-        time: from when on it was first in force; None: it never was.
+        spans: in which it was in force, the first first; none: it never was.
         effects: beyond the model as given, in words.
         added, removed: of these, beside the version before it in the table.
         gain: on held-out rows, with its interval, in words.
@@ -39,7 +39,7 @@ class VersionRow:
     """
 
     number: int
-    time: datetime | None
+    spans: tuple[SpanInForce, ...]
     effects: tuple[str, ...]
     added: tuple[str, ...]
     removed: tuple[str, ...]
@@ -65,20 +65,20 @@ def versions_page(seen: SeenTwin) -> dict[str, Any]:
     }
     if now is None or view is None or twin is None:
         return found
-    last = 0.0 if now.time is None else seen.reading.elapsed(now.time) + BEHIND
-    stretches, begun = in_force(view, last), first_in_force(view)
+    last = 0.0 if now.time is None else seen.reading.elapsed(now.time)
+    stretches, spans = in_force(view), spans_in_force(view, twin.station.start)
     rows: list[VersionRow] = []
     before: tuple[str, ...] = ()
     for one in view.versions():
         effects = tuple(effect_words(effect) for effect in json.loads(one.causes).values())
-        own = [stretch for stretch in stretches if stretch.version == one.number]
-        gap = _gap(seen.reading, own[-1]) if own else None
+        own = [a for a in stretches if a.version == one.number and a.until(last) > a.begin]
+        gap = _gap(seen.reading, own[-1], last) if own else None
         if not own and one.number == now.version:
             gap = now.recent
         rows.append(
             VersionRow(
                 one.number,
-                moment(twin.station.start, begun[one.number]) if one.number in begun else None,
+                tuple(spans.get(one.number, ())),
                 effects,
                 tuple(words for words in effects if words not in before),
                 tuple(words for words in before if words not in effects),
@@ -93,9 +93,10 @@ def versions_page(seen: SeenTwin) -> dict[str, Any]:
     return found | {"versions": rows[::-1]}
 
 
-def _gap(reading: TwinReading, stretch: InForce) -> float | None:
-    """Mean of the gap over the sensors and a stretch of time."""
-    series = reading.series(stretch.begin, stretch.end, ENTRIES)
+def _gap(reading: TwinReading, stretch: InForce, last: float) -> float | None:
+    """Mean of the gap over the sensors and the rows of a stretch, of which one may be the last."""
+    begin = stretch.begin + BEHIND if stretch.begin else 0.0
+    series = reading.series(begin, stretch.until(last) + BEHIND, ENTRIES)
     if series is None:
         return None
     found = float(mean(np.asarray(series.gap.mean, dtype=float)))

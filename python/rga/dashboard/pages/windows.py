@@ -1,6 +1,6 @@
-"""The stretch of time that somebody looks at."""
+"""What an address of a page asks for: the stretch of time that somebody looks at."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -33,14 +33,46 @@ class ChosenWindow:
     span: str
 
 
+class NotUnderstood(ValueError):
+    """An address asks for what there is not."""
+
+
+def asked_choice(query: Mapping[str, str], key: str, known: Collection[str], usual: str) -> str:
+    """Which of several an address asks for.
+
+    Raises:
+        NotUnderstood: it is none of them.
+
+    >>> asked_choice({"span": "day"}, "span", SPANS, USUAL), asked_choice({}, "span", SPANS, USUAL)
+    ('day', 'week')
+    """
+    found = query.get(key, usual)
+    if found not in known:
+        told = ", ".join(one for one in known if one)
+        raise NotUnderstood(f"{key}: there is no {found[:100]!r}: known are {told}")
+    return found
+
+
+def asked_moment(query: Mapping[str, str], key: str) -> datetime | None:
+    """The time that an address asks for; None: it asks for none.
+
+    Raises:
+        NotUnderstood: what it asks for is none.
+    """
+    text = query.get(key, "")
+    found = given_moment(text)
+    if text and found is None:
+        raise NotUnderstood(f"{key}: {text[:100]!r} is no time: write 2026-01-31T05:30, in UTC")
+    return found
+
+
 def asked_span(query: Mapping[str, str]) -> str:
     """The name of the stretch that an address asks for.
 
-    >>> asked_span({"span": "day"}), asked_span({"span": "century"}), asked_span({})
-    ('day', 'week', 'week')
+    Raises:
+        NotUnderstood: there is none of this name.
     """
-    span = query.get("span", USUAL)
-    return span if span in SPANS else USUAL
+    return asked_choice(query, "span", SPANS, USUAL)
 
 
 def chosen_window(query: Mapping[str, str], start: datetime, until: datetime) -> ChosenWindow:
@@ -50,9 +82,14 @@ def chosen_window(query: Mapping[str, str], start: datetime, until: datetime) ->
         query: of the address.
         start: time of the first row of all.
         until: time of the last one that is to be seen.
+
+    Raises:
+        NotUnderstood: there is no such stretch.
     """
     last = max((until - start).total_seconds(), SHORTEST)
-    first, end = (given_moment(query.get(name, "")) for name in ("from", "to"))
+    first, end = (asked_moment(query, name) for name in ("from", "to"))
+    if first is not None and end is not None and end <= first:
+        raise NotUnderstood("to: it is not after from")
     if first is not None or end is not None:
         begin = 0.0 if first is None else (first - start).total_seconds()
         stop = last if end is None else (end - start).total_seconds()

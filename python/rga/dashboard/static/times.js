@@ -15,9 +15,10 @@ function local(time) {
 }
 
 function age(time) {
-  const seconds = Math.max(0, (Date.now() - time) / 1000);
+  const behind = (Date.now() - time) / 1000, seconds = Math.abs(behind);
   const [, size, unit] = UNITS.find(([least]) => seconds >= least);
-  return `${Math.floor(seconds / size)}\u00a0${unit} ago`;
+  const span = `${Math.floor(seconds / size)}\u00a0${unit}`;
+  return behind >= 0 ? `${span} ago` : `in ${span}`;
 }
 
 function say() {

@@ -33,14 +33,19 @@ LEVELS = (
     GapLevel(4, "very far off", None),
 )
 UNKNOWN = GapLevel(-1, "no value", None)
+#: of a sensor that is not watched
+OUT_OF_USE = GapLevel(-1, "out of use", None)
 
 
 def gap_level(gap: float | None) -> GapLevel:
-    """The step of a gap [-].
+    """The step of a gap [-], by the two digits of it that are shown.
 
     >>> gap_level(1.2).words, gap_level(130.0).words, gap_level(None).words
     ('as noise', 'very far off', 'no value')
+    >>> gap_level(19.4).words, gap_level(19.6).words
+    ('off', 'far off')
     """
     if gap is None or not isfinite(gap):
         return UNKNOWN
-    return next(one for one in LEVELS if one.below is None or gap < one.below)
+    shown = float(f"{gap:.2g}")
+    return next(one for one in LEVELS if one.below is None or shown < one.below)

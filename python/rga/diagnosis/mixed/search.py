@@ -1,12 +1,13 @@
 """The search for causes in a record and in modes: from those of the record on."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
+from rga.diagnosis.modal.fit import shown_by
 from rga.diagnosis.modal.search import (
     UNLIKELY,
     borne,
@@ -62,6 +63,20 @@ def search(
         criteria: what decides a verdict.
         progress: called with what is done and the share of it.
     """
+    mixed = _searched(found, evidence, screening, criteria, progress)
+    while (shown := shown_by(mixed.fit.modal)).level > mixed.evidence.likelihood.level:
+        again = replace(evidence, likelihood=shown)
+        mixed = _searched(found, again, screening, criteria, progress)
+    return mixed
+
+
+def _searched(
+    found: Found,
+    evidence: MixedEvidence,
+    screening: Screening,
+    criteria: Criteria,
+    progress: Progress,
+) -> MixedFound:
     current = _exchanged(evidence.beside(found.fit), evidence, screening)
     current = _begun(current, evidence)
     candidates = modal_hypotheses(evidence.likelihood.trials)

@@ -28,6 +28,7 @@ from rga.diagnosis.modal.doubts import (
     warnings_of,
     weather,
 )
+from rga.diagnosis.modal.likelihood import MODEL_ERROR, ModalLikelihood
 from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
@@ -60,7 +61,12 @@ class ToldModes:
 
     @property
     def _nothing(self) -> Prediction:
-        return self.mixed.evidence.likelihood.trials.predict({})
+        return self._likelihood.trials.predict({})
+
+    @cached_property
+    def _likelihood(self) -> ModalLikelihood:
+        """What is told is held against what a model usually misses, whatever this one does."""
+        return self.mixed.evidence.likelihood.with_level(MODEL_ERROR)
 
     @property
     def _after(self) -> Prediction:
@@ -68,7 +74,7 @@ class ToldModes:
 
     def doubts(self) -> list[str]:
         """In words: why the causes do not account for the modes."""
-        likelihood, modal = self.mixed.evidence.likelihood, self.mixed.fit.modal
+        likelihood, modal = self._likelihood, self.mixed.fit.modal
         readings = likelihood.readings
         words = modes_off(likelihood, self._after)
         shown = [number for number in range(len(modal.hypotheses)) if self._shows(number)]
@@ -93,7 +99,7 @@ class ToldModes:
             extended_model: with the causes.
             tried: explanations of the record.
         """
-        likelihood = self.mixed.evidence.likelihood
+        likelihood = self._likelihood
         ends = self._nothing, self._after
         gap = findings.gap
         if self.by_modes and gap.held_out.gain <= 0:
@@ -138,7 +144,7 @@ class ToldModes:
 
     def _shows(self, number: int) -> bool:
         """Whether a cause that modes can show does show in them."""
-        own = change(self.mixed.evidence.likelihood, self.mixed.fit.modal, number)
+        own = change(self._likelihood, self.mixed.fit.modal, number)
         return float(np.linalg.norm(own)) >= SHOWS
 
     def _in_record(self, number: int) -> bool:
@@ -157,13 +163,13 @@ class ToldModes:
     def _left_out(self) -> tuple[FloatArray, FloatArray]:
         """Squared deviations of modes that were left out, without causes and with them."""
         evidence, fit = self.mixed.evidence, self.mixed.fit
-        before = squares(evidence.likelihood, self._nothing)
+        before = squares(self._likelihood, self._nothing)
         after = before.copy()
         if len(before) > 1:
             for mode in range(len(before)):
                 other = evidence.hiding(mode).beside(fit.alone).modal.prediction
                 if other is not None:
-                    after[mode] = squares(evidence.likelihood, other)[mode]
+                    after[mode] = squares(self._likelihood, other)[mode]
         return before, after
 
     def _cause(self, cause: Cause, number: int) -> Cause:
@@ -175,14 +181,14 @@ class ToldModes:
         separated, onset_within = cause.separated_by, cause.onset_ci90
         if number in shown:
             at = shown.index(number)
-            words = moved_modes(evidence.likelihood, fit.modal, at)
+            words = moved_modes(self._likelihood, fit.modal, at)
             parts += [words] if words else []
             # When it began is known by the modes, of which the interval of the record says nothing.
             onset_within = None if self._shows(at) else onset_within
             if self._shows(at) and self.mixed.rivals[number]:
                 nearest = self.mixed.rivals[number][0][0]
                 against = effect_words(last_effect(nearest.static, self.record))
-                words = separating(evidence.likelihood, fit.modal, nearest.modal)
+                words = separating(self._likelihood, fit.modal, nearest.modal)
                 if not separated:
                     separated = f"against {against}: {words}"
         return cause.model_copy(
@@ -216,7 +222,7 @@ class ToldModes:
         shown = evidence.on_modes(fit.hypotheses)
         if number not in shown:
             return of_record, np.zeros_like(fit.modal.residual)
-        return of_record, change(evidence.likelihood, fit.modal, shown.index(number))
+        return of_record, change(self._likelihood, fit.modal, shown.index(number))
 
     def _along(self, one: tuple[Reduced, FloatArray], other: tuple[Reduced, FloatArray]) -> float:
         covariance = self.mixed.evidence.problem.covariance

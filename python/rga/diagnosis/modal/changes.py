@@ -17,10 +17,10 @@ def change(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> FloatArra
     """What a cause changes of the whitened residual, beside the others."""
     others = [one for k, one in enumerate(fit.hypotheses) if k != number]
     z = np.delete(fit.z, fit.of(number))
-    without = predicted(likelihood, others, z)
-    if without is None:
+    without, after = predicted(likelihood, others, z), fit.prediction
+    if without is None or after is None:
         return np.zeros_like(fit.residual)
-    return np.asarray(likelihood.residual(without) - fit.residual)
+    return np.asarray(likelihood.residual(without) - likelihood.residual(after))
 
 
 def moved_modes(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> str:

@@ -100,6 +100,17 @@ def least_loss(fit: ModalFit) -> float:
     return min(own.likelihood_loss, fit.likelihood_loss)
 
 
+def shown_by(fit: ModalFit) -> ModalLikelihood:
+    """The likelihood with the error of the model that its causes leave, where that is larger.
+
+    A model that misses some modes by much may do so in those that speak for a cause.
+    """
+    if not fit.hypotheses or fit.prediction is None:
+        return fit.likelihood
+    level = fit.likelihood.likeliest_level(fit.prediction)
+    return fit.likelihood.with_level(max(level, fit.likelihood.level))
+
+
 def _fitted(
     likelihood: ModalLikelihood,
     hypotheses: Sequence[Hypothesis],

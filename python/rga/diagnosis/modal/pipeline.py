@@ -12,8 +12,8 @@ from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
 from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
-from rga.diagnosis.modal.fit import ModalFit, fitted
-from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.fit import ModalFit, fitted, shown_by
+from rga.diagnosis.modal.likelihood import MODEL_ERROR, ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.remarks import apart_words, rival_words
 from rga.diagnosis.modal.search import ModalFound, search
@@ -106,7 +106,8 @@ def _diagnosed(
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)
-    likelihood = found.fit.likelihood
+    # What is told is held against what a model usually misses, whatever this one does.
+    likelihood = found.fit.likelihood.with_level(MODEL_ERROR)
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
@@ -151,7 +152,11 @@ def _searched(
     model: Model, readings: ModalReadings, criteria: Criteria, progress: Progress
 ) -> ModalFound:
     likelihood = ModalLikelihood(ModalTrials(model, readings))
-    return search(likelihood, modal_hypotheses(likelihood.trials), criteria, progress)
+    candidates = modal_hypotheses(likelihood.trials)
+    found = search(likelihood, candidates, criteria, progress)
+    while (likelihood := shown_by(found.fit)).level > found.fit.likelihood.level:
+        found = search(likelihood, candidates, criteria, progress)
+    return found
 
 
 def estimated(fit: ModalFit, number: int) -> Effect:

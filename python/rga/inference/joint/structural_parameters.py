@@ -71,7 +71,7 @@ class StructuralParameter:
 
         >>> sunk = StructuralParameter("settlement of east", {}, "displacement", {}, 0, 1, (-1, 1))
         >>> sunk.changed(0.0, -0.0011)
-        'settlement of east -0.0011 m'
+        'settlement of east -1.1 mm'
         >>> soft = replace(sunk, name="bearing east", key="factor", driven={"log10": True})
         >>> soft.changed(0.0, 0.02), soft.changed(0.0, -1.4)
         ('bearing east +4.7 %', 'bearing east 0.04 times what it was')
@@ -81,7 +81,9 @@ class StructuralParameter:
             if abs(factor - 1.0) < LARGE:
                 return f"{self.name} {100 * (factor - 1.0):+.2g} %"
             return f"{self.name} {factor:.2g} times what it was"
-        return f"{self.name} {after - before:+.2g}" + ("" if self.follows else " m")
+        if self.follows is not None:
+            return f"{self.name} {after - before:+.2g}"
+        return f"{self.name} {1e3 * (after - before):+.2g} mm"
 
 
 class Unknowns:

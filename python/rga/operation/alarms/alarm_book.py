@@ -144,8 +144,7 @@ class AlarmBook:
                 return
             with self._file.writing() as connection:
                 for condition in seen.occurred:
-                    self._clear(connection, condition.key, "another has come")
-                    self._raise(connection, condition)
+                    self._occur(connection, condition)
                 raised = {one.key for one in seen.occurred}
                 for key, is_wrong in ripe:
                     if not is_wrong:
@@ -207,6 +206,16 @@ class AlarmBook:
         passed = self._waiting.passed(twin, waiting, self._clock.monotonic())
         grown = [key for key, one in active.items() if key in wrong and _doubled(one, wrong[key])]
         return [*passed, *((key, True) for key in grown)]
+
+    def _occur(self, connection: Connection, condition: Condition) -> None:
+        """Raise the alarm of what has occurred; what is found again leaves its alarm as it is."""
+        known = store.open_alarm(connection, condition.key)
+        if condition.is_again and known is not None and known.is_active:
+            if set(condition.sensors) <= set(known.sensors):
+                return
+        else:
+            self._clear(connection, condition.key, "another has come")
+        self._raise(connection, condition)
 
     def _raise(self, connection: Connection, condition: Condition) -> None:
         now, known = self._clock.now(), store.open_alarm(connection, condition.key)

@@ -16,8 +16,8 @@ class DelaySettings(SettingsTable):
         off: how long it is well before the alarm is cleared [s].
     """
 
-    on: Wait = 60.0
-    off: Wait = 60.0
+    on: Wait = Field("60 s", validate_default=True)
+    off: Wait = Field("60 s", validate_default=True)
 
 
 class AlarmSettings(SettingsTable):
@@ -30,7 +30,7 @@ class AlarmSettings(SettingsTable):
     """
 
     disk: Annotated[float, Field(ge=0, le=1)] = 0.1
-    lag: Duration = 3600.0
+    lag: Duration = Field("1 h", validate_default=True)
     quality: DelaySettings = DelaySettings.model_validate({"off": "10 min"})
     source: DelaySettings = DelaySettings()
     service: DelaySettings = DelaySettings()

@@ -39,6 +39,7 @@ class Condition:
         size: that raises the alarm anew where it has doubled, as more packets are missing; 0: it
             has none.
         is_renewed: its words change while it is there: its alarm says the newest of them.
+        is_again: when it occurred it was there already: it is found again, not anew.
     """
 
     key: ConditionKey
@@ -47,6 +48,7 @@ class Condition:
     sensors: tuple[str, ...] = ()
     size: int = 0
     is_renewed: bool = False
+    is_again: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,8 @@ class Observation:
         conditions: that are there now.
         judged: classes of which all is known: what is not among the conditions is well.
         occurred: what began since the last observation, of which each raises an alarm, whether or
-            not it is still there.
+            not it is still there; what is found again raises one only where it shows at more
+            sensors.
         endings: of conditions that are not there any more, where more is known of them than that.
         keep: writes up to where it was looked, with the alarms or not at all; None: nothing is to
             be written.

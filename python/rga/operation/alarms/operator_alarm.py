@@ -95,13 +95,17 @@ class OperatorAlarm:
         return "cleared" if self.acknowledged_at is None else "closed"
 
     def raised_again(self, condition: Condition, now: datetime) -> Self:
-        """The same where it is wrong again, or has become worse: it is to be acknowledged anew."""
+        """The same where it is wrong again, or has become worse: it is to be acknowledged anew.
+
+        What has become worse has begun when it did, and shows at all sensors at which it has.
+        """
+        before = self.sensors if self.is_active else ()
         return replace(
             self,
             words=condition.words,
-            sensors=condition.sensors,
+            sensors=tuple(dict.fromkeys((*before, *condition.sensors))),
             size=condition.size,
-            since=condition.since,
+            since=self.since if self.is_active else condition.since,
             raised_at=now,
             cleared_at=None,
             acknowledged_at=None,

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 
+from rga.model import Model
+from rga.operation.alarms.alarm_rate import rate_words
 from rga.operation.alarms.condition import Condition, ConditionKey, Ending
 from rga.operation.alarms.proposal_watch import proposed
 from rga.operation.reading.twin_now import moment
 from rga.operation.reading.twin_reading import TwinReading
-from rga.operation.sources.clock import in_words
-from rga.quantities import counted
 from rga.twin.history import Event
 from rga.twin.repository import RunView
 from rga.twin.restore import standing_of, station_of
@@ -60,15 +60,21 @@ class RepositoryWatch:
         reading: of the twin.
         settings: of its run.
         every: length of a row [s].
+        model: as it was given.
         place: up to where it was looked at before; None: never, and what lies in the past raises
             no alarm unless it goes on.
     """
 
     def __init__(
-        self, reading: TwinReading, settings: Settings, every: float, place: RunPlace | None
+        self,
+        reading: TwinReading,
+        settings: Settings,
+        every: float,
+        model: Model,
+        place: RunPlace | None,
     ) -> None:
         self._reading, self._name, self._place = reading, reading.name, place
-        self._rarity = _rarity(settings, every)
+        self._rate = rate_words(settings, every, model)
         self._view: RunView | None = None
         self._seen: SeenRun | None = None
 
@@ -106,25 +112,27 @@ class RepositoryWatch:
         before = here if self._place is None else self._place
         since = before.step if before.run == here.run else 0
         occurred = tuple(
-            self._gap(view.at_step(step), event)
+            self._gap(view, step, event)
             for step, event in view.events_since(since)
             if event.kind == "alarm"
         )
         standing = standing_of(view)
         conditions = []
-        if standing.alarm is not None or standing.doubted:
+        if standing.out_of_sync:
             conditions.append(occurred[-1] if occurred else self._lasting(view, standing))
         waiting, endings = proposed(self._name, view, partial(_at, view))
         if waiting is not None:
             conditions.append(waiting)
         return SeenRun(tuple(conditions), occurred, here, view.rows, endings)
 
-    def _gap(self, view: RunView, event: Event) -> Condition:
-        """What an alarm of the monitor says, in the run as it stood then."""
-        standing = standing_of(view)
+    def _gap(self, view: RunView, step: int, event: Event) -> Condition:
+        """What an alarm of the monitor says, in the run as it stood at that step."""
+        then, before = view.at_step(step), standing_of(view.at_step(step - 1))
+        standing = standing_of(then)
         row = event.row if standing.since is None else standing.since
-        words = f"{event.words}; {self._rarity}" if self._rarity else event.words
-        return Condition(self._key, words, _at(view, row), event.sensors)
+        words = f"{event.words}; {self._rate}" if self._rate else event.words
+        since, again = _at(then, row), before.out_of_sync
+        return Condition(self._key, words, since, event.sensors, is_again=again)
 
     def _lasting(self, view: RunView, standing: Standing) -> Condition:
         """A gap that an alarm was raised of before, or that shows without one."""
@@ -144,14 +152,3 @@ def _at(view: RunView, row: int) -> datetime:
     if not len(time):
         return datetime.fromisoformat(view.acknowledged_at).astimezone(UTC)
     return moment(station_of(view).start, float(time[0])).astimezone(UTC)
-
-
-def _rarity(settings: Settings, every: float) -> str:
-    """How rare an alarm is without a change; of the paper's rule nothing is known."""
-    if settings.detector != "monitor":
-        return ""
-    apart = in_words(settings.arl0 * every)
-    return (
-        f"without a change such an alarm comes once in {counted(round(settings.arl0), 'row')} "
-        f"({apart}) on average"
-    )

@@ -13,11 +13,11 @@ from rga.operation.inbox.kept_cells import KeptCell
 from rga.operation.inbox.packets import NEVER
 from rga.operation.service_clock import moment_of
 
-#: what can be wrong with a sensor, and how that is said of it
+#: what can be wrong with a sensor, and how that is said of it, its value and its range
 CAUSES: Mapping[str, str] = {
     "silent": "sends nothing",
-    "stuck": "has stood still",
-    "out of range": "reads what its range does not hold",
+    "stuck": "has stood still at {value}",
+    "out of range": "reads {value}, which its range of {low} to {high} does not hold",
     "conflict": "is sent with two values for one moment",
 }
 #: rows one after the other after which a range is left or values conflict: one may be a spike
@@ -66,11 +66,16 @@ class SensorQuality:
             [one not in context or context[one].noise is not None for one in names], dtype=np.bool_
         )
         self._silent_rows = max(1, int(np.ceil(patience / every)))
+        stated = {name: one.unit for name, one in model.sensors.items()}
+        stated |= {name: one.unit for name, one in context.items()}
+        self._units = [stated.get(one, "").removeprefix("-") for one in names]
         n = len(self._names)
         #: rows one after the other, and begin of the first of them, by cause
         self._rows = {cause: np.zeros(n, np.int64) for cause in CAUSES}
         self._since = {cause: np.zeros(n, np.int64) for cause in CAUSES}
         self._value = np.full(n, np.nan, np.float32)
+        #: the first value that a range does not hold, as long as there are such
+        self._outside = np.full(n, np.nan, np.float32)
         self._longest = np.zeros(n, np.int64)
         self._first: int | None = None
         self.last = NEVER
@@ -89,7 +94,11 @@ class SensorQuality:
         self._value = np.where(came, cell.most, self._value)
         self._follow("silent", ~came, came, cell.begin)
         self._follow("stuck", still & self._varies, ended, cell.begin)
-        outside = came & ((cell.least < self._low) | (cell.most > self._high))
+        below = came & (cell.least < self._low)
+        outside = below | came & (cell.most > self._high)
+        first = outside & (self._rows["out of range"] == 0)
+        value = np.where(below, cell.least, cell.most)
+        self._outside = np.where(first, value, self._outside).astype(np.float32)
         self._follow("out of range", outside, came & ~outside, cell.begin)
         conflicts = cell.conflicts > 0
         self._follow("conflict", conflicts, came & ~conflicts, cell.begin)
@@ -103,8 +112,19 @@ class SensorQuality:
                 name = self._names[k]
                 key = ConditionKey(self._twin, "quality", cause, name)
                 since = moment_of(int(self._since[cause][k]))
-                found.append(Condition(key, f"{name} {words}", since, (name,)))
+                said = f"{name} {words.format(**self._values(cause, int(k)))}"
+                found.append(Condition(key, said, since, (name,)))
         return found
+
+    def _values(self, cause: str, k: int) -> dict[str, str]:
+        """What a sensor reads and may read, in words."""
+        value = self._outside[k] if cause == "out of range" else self._value[k]
+        unit = self._units[k]
+        return {
+            "value": f"{value:.6g} {unit}".rstrip(),
+            "low": f"{self._low[k]:.6g}",
+            "high": f"{self._high[k]:.6g} {unit}".rstrip(),
+        }
 
     def to_json(self) -> str:
         """What is known, as text."""
@@ -114,19 +134,23 @@ class SensorQuality:
             "last": self.last,
             "rows": {cause: rows.tolist() for cause, rows in self._rows.items()},
             "since": {cause: since.tolist() for cause, since in self._since.items()},
-            "value": [None if np.isnan(one) else float(one) for one in self._value],
+            "value": _written(self._value),
+            "outside": _written(self._outside),
             "longest": self._longest.tolist(),
         }
         return json.dumps(known)
 
     def _restore(self, known: Mapping[str, Any]) -> None:
-        if tuple(known["names"]) != self._names:
+        if tuple(known["names"]) != self._names or "outside" not in known:
+            # Those of another station, or of an earlier rga: it is looked at them again.
             return
         self._first, self.last = known["first"], known["last"]
         self._rows = {cause: np.array(known["rows"][cause], np.int64) for cause in CAUSES}
         self._since = {cause: np.array(known["since"][cause], np.int64) for cause in CAUSES}
-        value = [np.nan if one is None else one for one in known["value"]]
-        self._value = np.array(value, np.float32)
+        self._value, self._outside = (
+            np.array([np.nan if one is None else one for one in known[values]], np.float32)
+            for values in ("value", "outside")
+        )
         self._longest = np.array(known["longest"], np.int64)
 
     def _follow(
@@ -146,3 +170,8 @@ class SensorQuality:
         if self._first is None or self.last - self._first < KNOWN:
             return np.iinfo(np.int64).max
         return np.maximum(max(STILL_ROWS, self._silent_rows), STILL_TIMES * self._longest)
+
+
+def _written(values: NDArray[np.float32]) -> list[float | None]:
+    """Values as JSON can say them."""
+    return [None if np.isnan(one) else float(one) for one in values]

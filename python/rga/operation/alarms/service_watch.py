@@ -31,13 +31,11 @@ class ServiceWatch:
         """What there is to see now.
 
         Args:
-            restarted: the service is up for too short to tell.
+            restarted: the service is up for too short to tell whether all is well again.
 
         Raises:
             InputError: the file of the service cannot be read, or its disk not be looked at.
         """
-        if restarted:
-            return Observation((), frozenset())
         found = []
         if not self._room.is_enough():
             words = f"less than {self._room.least:.0%} of the disk is free: {WAITS} for room"
@@ -46,7 +44,7 @@ class ServiceWatch:
             self._wrong("undelivered", name, f"notices of {name} do not arrive: {why}")
             for name, why in self._undelivered().items()
         ]
-        return Observation(tuple(found), frozenset({"service"}))
+        return Observation(tuple(found), frozenset() if restarted else frozenset({"service"}))
 
     def _wrong(self, cause: str, subject: str, words: str) -> Condition:
         return Condition(ConditionKey(None, "service", cause, subject), words, self._clock.now())

@@ -17,8 +17,8 @@ class Supervision:
     """Observes twins and the service, again and again.
 
     A service that was just started says nothing of what is silent: every source has its patience
-    before it does. What a twin itself says is heard at once, also when it was said while the
-    service was away.
+    before it does, and nothing is taken for well again before that. All else that is wrong is heard
+    at once, also what a twin said while the service was away.
 
     Args:
         book: of alarms.

@@ -31,8 +31,10 @@ MOST_CELLS = 256
 MOST_PAST = 10_000
 #: rows after which it is kept how the sensors are; those behind are looked at again after a restart
 KEPT_EVERY = 64
-#: classes of alarms that need time to tell what is silent from what has not begun
+#: classes of alarms of which nobody knows right after a start whether all is well again
 SLOW: frozenset[AlarmKind] = frozenset({"quality", "source", "service"})
+#: what needs time to be told from what has not begun: that something does not come, or lags
+ABSENT = frozenset({"silent", "down", "missing", "lag"})
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class TwinWatch:
         self._next: _Watched | None = None
         place = None if self._stored is None else self._stored.place
         self._reading = TwinReading(twin.name, twin.directory, repository)
-        self._run = RepositoryWatch(self._reading, chosen, self._rows.every, place)
+        self._run = RepositoryWatch(self._reading, chosen, self._rows.every, twin.model, place)
         self._quality: SensorQuality | None = None
         self._account = AccountWatch(twin, clock)
         names = [source_name(one) for one in settings.source]
@@ -99,10 +101,10 @@ class TwinWatch:
 
         Args:
             troubles: that the service knows of.
-            restarted: the service is up for too short to tell what is silent; what the twin
-                itself says is seen all the same.
+            restarted: the service is up for too short to tell what is silent or well again; what
+                is wrong otherwise is seen all the same.
         """
-        unknown: set[AlarmKind] = set(SLOW) if restarted else set()
+        unknown: set[AlarmKind] = set()
         found, seen = self._in_service(troubles), None
         try:
             seen = self._run.look()
@@ -116,9 +118,13 @@ class TwinWatch:
         except InputError as error:
             unknown |= {"quality", "source"}
             found.append(self._trouble("inbox", f"the inbox: {error}"))
+        found = [one for one in found if one.key.kind not in unknown]
+        judged = {"gap", "proposal", *SLOW} - unknown
+        if restarted:
+            found, judged = [one for one in found if one.key.cause not in ABSENT], judged - SLOW
         return Observation(
-            tuple(one for one in found if one.key.kind not in unknown),
-            frozenset({"gap", "proposal", *SLOW} - unknown),
+            tuple(found),
+            frozenset(judged),
             () if seen is None else seen.occurred,
             {} if seen is None else seen.endings,
             None if seen is None else self._to_keep(seen),

@@ -31,9 +31,9 @@ class Faults(BaseModel):
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 0
     duplicate: Share = 0.0
     out_of_order: Share = 0.0
-    out_of_order_by: Duration = 60.0
+    out_of_order_by: Duration = Field("60 s", validate_default=True)
     late: Share = 0.0
-    late_by: Duration = 3600.0
+    late_by: Duration = Field("1 h", validate_default=True)
     garbage: Share = 0.0
     clock_offset: Annotated[float, Field(ge=-1e9, le=1e9)] = 0.0
 

@@ -26,8 +26,8 @@ UNACKNOWLEDGED = 5.0
 #: how long nobody answers before that is told [s]
 SILENT = 5.0
 #: packets that are on their way at most: mosquitto as it comes drops what waits beyond a thousand,
-#: and each of these may wait there twice
-MOST_OPEN = 500
+#: and each of these may wait there twice, the first of them more often
+MOST_OPEN = 400
 
 
 class Sender(Protocol):
@@ -193,6 +193,7 @@ class BrokerSender:
         self._away, self._unheard = _Silence(told), _Silence(told)
         self._awaited = f"the source {source!r} of twin {twin[0]!r}"
         self._open: OrderedDict[Number, bytes] = OrderedDict()
+        self._twice: set[Number] = set()
         self._lock, self._heard = Lock(), time.monotonic()
         self._refused: str | None = None
         self._client = self._new_client()
@@ -250,6 +251,7 @@ class BrokerSender:
             self._client = self._new_client()
             if self._connects():
                 self._unheard.heard()
+                self._twice.clear()
                 self._send_from_the_first()
             else:
                 self._away.tell(
@@ -291,8 +293,9 @@ class BrokerSender:
             while first[0] in self._open and time.monotonic() < until:
                 time.sleep(AGAIN / 100)
         with self._lock:
-            payloads, self._heard = list(self._open.values()), time.monotonic()
-        for payload in payloads:
+            once = {key: one for key, one in self._open.items() if key not in self._twice}
+            self._twice, self._heard = set(self._open), time.monotonic()
+        for payload in once.values():
             self._client.publish(self._topic, payload, qos=1)
 
     def _connected(self, client: Client, _: object, __: object, reason: Any, *___: object) -> None:

@@ -22,7 +22,7 @@ class Arrival:
         place: that it came from, such as a topic, without which it cannot be read again.
         first, last: moments of its samples, microseconds since 1970 (UTC).
         number: None: the logger counts none.
-        sha256: of what tells it from others, where it has no number.
+        sha256: of what tells it from others; None: it is told from none, or by its number alone.
         refused: why it cannot be used; None: it can.
     """
 

@@ -17,6 +17,8 @@ REMEMBERED = 24 * 3600 * MICROSECONDS
 IN_INBOX = 7 * REMEMBERED
 #: why a packet is refused whose logger began to count again
 COUNTED_AGAIN = "its number came before with other times: a logger that counts anew needs a stream"
+#: first and last moment of a packet, and what tells its content
+_Mark = tuple[int, int, str | None]
 
 
 class KnownPackets:
@@ -26,7 +28,7 @@ class KnownPackets:
         self._connection, self._source = connection, source
         self._streams: dict[str, Numbers] = {}
         self._contents: set[str] = set()
-        self._moments: dict[Number, tuple[int, int]] = {}
+        self._marks: dict[Number, _Mark] = {}
 
     def fate_of(self, arrival: Arrival, until: int) -> Outcome:
         """What becomes of a packet, and why if it is refused."""
@@ -36,11 +38,10 @@ class KnownPackets:
             if not numbers.takes(arrival.number.sequence):
                 reason = "its number leaves more gaps than are kept of a stream"
             elif not numbers.take(arrival.number.sequence):
-                if reason is None and self._is_another(arrival, arrival.number):
-                    return "refused", COUNTED_AGAIN
-                return "duplicate", None
+                other = None if reason else self._other(arrival, arrival.number)
+                return ("duplicate", None) if other is None else ("refused", other)
             else:
-                self._moments[arrival.number] = arrival.first, arrival.last
+                self._marks[arrival.number] = _mark_of(arrival)
         elif reason is None and arrival.sha256 is not None:
             if self._has_come(arrival.sha256, arrival.arrived):
                 return "duplicate", None
@@ -71,19 +72,26 @@ class KnownPackets:
             self._streams[stream] = known
         return self._streams[stream]
 
-    def _is_another(self, arrival: Arrival, number: Number) -> bool:
-        """Whether a packet is not the one that had its number before."""
-        moments = arrival.first, arrival.last
-        if number in self._moments:
-            return self._moments[number] != moments
+    def _other(self, arrival: Arrival, number: Number) -> str | None:
+        """Why a packet is not the one that had its number before; None: it is."""
+        known = self._marks.get(number) or self._kept(number)
+        if known is None:
+            # The other one was refused, or has gone to the archive since.
+            return COUNTED_AGAIN if arrival.last > arrival.arrived - IN_INBOX else None
+        *moments, content = _mark_of(arrival)
+        if list(known[:2]) != moments:
+            return COUNTED_AGAIN
+        if known[2] in (None, content):
+            return None
+        return f"stream {number.stream}, packet {number.sequence} came before with other content"
+
+    def _kept(self, number: Number) -> _Mark | None:
+        """What is known of the packet of a number in the inbox; None: there is none."""
         c = tables.packet.c
         same = (c.stream == number.stream) & (c.sequence == number.sequence)
-        chosen = select(c.first, c.last).where((c.source == self._source) & same)
+        chosen = select(c.first, c.last, c.sha256).where((c.source == self._source) & same)
         found = self._connection.execute(chosen).one_or_none()
-        if found is not None:
-            return tuple(found) != moments
-        # The other one was refused, or has gone to the archive since.
-        return arrival.last > arrival.arrived - IN_INBOX
+        return None if found is None else (found.first, found.last, found.sha256)
 
     def _has_come(self, sha256: str, arrived: int) -> bool:
         if sha256 in self._contents:
@@ -93,3 +101,7 @@ class KnownPackets:
         recent = c.arrived.between(arrived - REMEMBERED, arrived + REMEMBERED)
         found = select(c.id).where(same & recent).limit(1)
         return self._connection.execute(found).one_or_none() is not None
+
+
+def _mark_of(arrival: Arrival) -> _Mark:
+    return arrival.first, arrival.last, arrival.sha256

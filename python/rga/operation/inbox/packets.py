@@ -244,9 +244,12 @@ def _last(connection: Connection, table: Table) -> int:
 
 
 def _refused(id: int, source: str, arrival: Arrival, reason: str | None) -> dict[str, Any]:
-    payload = arrival.payload[:KEPT_OF_REFUSED]
+    """A packet that cannot be used, and why, with the file or topic that it came from."""
+    payload, told = arrival.payload[:KEPT_OF_REFUSED], reason or ""
+    if arrival.place not in told:
+        told = f"{arrival.place}: {told}"
     return with_checksum(
-        id=id, source=source, arrived=arrival.arrived, reason=reason, payload=payload
+        id=id, source=source, arrived=arrival.arrived, reason=told, payload=payload
     )
 
 

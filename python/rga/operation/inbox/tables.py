@@ -90,6 +90,8 @@ cursor = Table(
     text("state"),
     checksum(),
 )
+# One line: the length of the rows [µs].
+length = Table("length", metadata, large_number("every"), checksum())
 # One line: rows before this moment are final.
 sealed = Table("sealed", metadata, large_number("until"), checksum())
 # What lies beside the mean of a row: the samples of a cell, by channel and context.

@@ -31,7 +31,7 @@ class NotifySettings(SettingsTable):
     on: Annotated[tuple[Topic, ...], Field(min_length=1)] = (
         "alarm", "proposal", "quality", "source", "service",
     )  # fmt: skip
-    at_most: Rate = (12, 3600.0)
+    at_most: Rate = Field("12 an hour", validate_default=True)
     all_is_well: time | None = None
 
     @field_validator("all_is_well")

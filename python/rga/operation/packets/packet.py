@@ -1,8 +1,10 @@
 """A packet: what a logger sends at once."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from hashlib import sha256
 
 import numpy as np
 import numpy.typing as npt
@@ -52,3 +54,20 @@ class SensorPacket:
     values: FloatArray
     units: Mapping[str, str] = field(default_factory=dict)
     timed: bool = True
+
+    @property
+    def sha256(self) -> str:
+        """Of what it says, however it was written.
+
+        >>> from dataclasses import replace
+        >>> times, values = np.array([0]), np.array([[0.5, np.nan]])
+        >>> one = SensorPacket(None, ("D1", "D2"), times, values)
+        >>> other = SensorPacket(None, ("D2", "D1"), times, values[:, ::-1])
+        >>> one.sha256 == other.sha256, one.sha256 == replace(one, values=values + 1).sha256
+        (True, False)
+        """
+        order = sorted(range(len(self.channels)), key=self.channels.__getitem__)
+        said = json.dumps([[self.channels[k] for k in order], self.times.tolist()])
+        # All that is missing is missing alike, and a zero has no sign.
+        values = np.where(np.isnan(self.values), np.nan, self.values + 0.0)[:, order]
+        return sha256(said.encode() + values.tobytes()).hexdigest()

@@ -10,11 +10,13 @@ from rga.report.figures.of_run.run_gap import mean
 from rga.twin.commands.proposals import decision
 from rga.twin.repository import Proposal, RunView
 from rga.twin.restore import standing_of
-from rga.twin.run_state import Stage
+from rga.twin.run_state import Stage, Standing
 from rga.twin.twin import Twin
 
 #: rows over which a gap is averaged
 RECENT = 24
+#: stages before the end of the first calibration
+LEARNS = ("initialise", "gather", "calibrate")
 
 
 @dataclass(frozen=True)
@@ -48,10 +50,15 @@ class TwinNow:
         stage: what it does next.
         version: of the model that is in force; 0 before the first.
         causes: what that version has beyond the model as given, in words.
-        out_of_sync: whether an alarm is being dealt with.
+        out_of_sync: whether readings have left what the model lets expect, and nothing in force
+            explains it.
+        is_sought: whether the reason for that is being looked for.
+        learns: whether it has yet to learn about the version in force.
         undecided: the proposal that nobody has decided about.
-        gap: mean over the sensors of the last row, by the version in force [-].
-        recent: mean over the sensors and the last rows, by the version in force [-].
+        out_of_use: sensors that are not watched now: they were left out of the calibration, or
+            somebody has taken them out.
+        gap: mean over the sensors in use of the last row, by the version in force [-].
+        recent: mean over the sensors in use and the last rows, by the version in force [-].
         sensors: by name.
         contexts: mean and standard deviation of each, in its unit.
     """
@@ -63,7 +70,10 @@ class TwinNow:
     version: int
     causes: tuple[str, ...]
     out_of_sync: bool
+    is_sought: bool
+    learns: bool
     undecided: Proposal | None
+    out_of_use: tuple[str, ...]
     gap: float | None
     recent: float | None
     sensors: dict[str, SensorNow]
@@ -100,8 +110,11 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
             _number(squares[k] / own**2),
             _number(recent[k] / own**2),
         )
-    known = [one.gap for one in sensors.values() if one.gap is not None]
-    usual = [one.recent for one in sensors.values() if one.recent is not None]
+    time = moment(station.start, float(last.time[-1])) if len(last.rows) else None
+    out = out_of_use(standing, time)
+    used = [one for name, one in sensors.items() if name not in out]
+    known = [one.gap for one in used if one.gap is not None]
+    usual = [one.recent for one in used if one.recent is not None]
     proposals = view.proposals()
     open_ = proposals[-1] if proposals and decision(view, proposals[-1]) is None else None
     effects = twin.state.versions.get(twin.version, {})
@@ -109,12 +122,15 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
     return TwinNow(
         steps=view.steps,
         rows=row + 1,
-        time=moment(station.start, float(last.time[-1])) if len(last.rows) else None,
+        time=time,
         stage=standing.stage,
         version=twin.version,
         causes=tuple(effect_words(one) for one in effects.values()),
-        out_of_sync=standing.alarm is not None,
+        out_of_sync=standing.out_of_sync,
+        is_sought=standing.alarm is not None,
+        learns=standing.stage in LEARNS or standing.learned_under != twin.version,
         undecided=open_,
+        out_of_use=tuple(name for name in names if name in out),
         gap=float(np.mean(known)) if known else None,
         recent=float(np.mean(usual)) if usual else None,
         sensors=sensors,
@@ -122,6 +138,22 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
             name: (float(mean), spread.get(name, 0.0)) for name, mean in twin.context.items()
         },
     )
+
+
+def out_of_use(standing: Standing, time: datetime | None) -> set[str]:
+    """Sensors that are not watched at a time: left out by the calibration, or taken out by hand.
+
+    Args:
+        standing: of the run.
+        time: of the newest row; None: there is none.
+    """
+    out = set(standing.stuck)
+    if time is not None:
+        now = time.timestamp()
+        for sensor, since, until in standing.excluded:
+            if since <= now and (until is None or now < until):
+                out.add(sensor)
+    return out
 
 
 def moment(start: str | float, elapsed: float) -> datetime:

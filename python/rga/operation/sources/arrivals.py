@@ -35,12 +35,13 @@ def arrival_of(
         kind: its format, where the sender says it.
     """
     kind = reader.format_of(payload, kind)
-    number = None
+    number = digest = None
     try:
         if kind in PACKETS:
             packets = reader.packets_of(kind, payload, where, arrived)
             reader.check_used(packets, where)
             number, timed = packets[0].number, all(one.timed for one in packets)
+            digest = None if number is None else packets[0].sha256
             # The times of a packet rise.
             first = min(int(one.times[0]) for one in packets)
             last = max(int(one.times[-1]) for one in packets)
@@ -59,7 +60,6 @@ def arrival_of(
         fault = clock.refused(ClockSight(where, channels, number, first, last, arrived))
         fault = fault and f"{fault}: {_MEND}"
     # The same number may be sent again and again, and is another reading each time.
-    digest = None
     if timed and number is None:
         digest = sha256(where.encode() + b"\0" + payload).hexdigest()
     return Arrival(payload, kind, arrived, first, last, number, digest, fault, where)

@@ -119,6 +119,16 @@ class HeadFinder:
         return bool(one.header_line or one.units_line or one.data_line)
 
     @property
+    def promised(self) -> int:
+        """Lines that the mapping says are above the rows; 0: it says nothing of them.
+
+        >>> finders = HeadFinder(FileMapping(header_line=7)), HeadFinder(FileMapping())
+        >>> [one.promised for one in finders]
+        [7, 0]
+        """
+        return self.stated if self._is_stated or self.mapping.logger else 0
+
+    @property
     def stated(self) -> int:
         """Lines above the rows, as far as the mapping states them."""
         return 0 if self.headless else self.mapping.head_lines

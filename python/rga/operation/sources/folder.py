@@ -1,9 +1,11 @@
 """A folder that loggers write files to: what is new in them, line by line where they grow."""
 
+import os
 import stat
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from threading import Event
@@ -64,8 +66,10 @@ class Folder:
     A file is known by its number on the disk, or by its name where a share that was away gives it
     another number; and it is the same file as long as its head, and what stands before the place
     where it is read on, are the same. One that was replaced or cut is read anew. A line is read
-    when its end is there, a file that is no text or JSON when it has stopped growing. Files whose
-    names begin with a dot are left alone.
+    when its end is there, a file that is no text or JSON when it has stopped growing, and so is one
+    that ends within the lines that the mapping states above the rows, where the logger goes on in
+    another. Files whose names begin with a dot are left alone, and links that lead out of the
+    folder are not followed.
 
     Where the lines above the rows come again in a file, as a logger writes them that starts again,
     the rows below are read by them.
@@ -131,11 +135,15 @@ class Folder:
     def _listed(self) -> list[_File]:
         """The files, oldest first."""
         found = []
+        leads_out = _ways_out(self._path)
         for path in self._path.glob(self._files):
             name = path.relative_to(self._path).as_posix()
             if path.name.startswith("."):
                 continue
             try:
+                if leads_out(path.parent) or (path.is_symlink() and leads_out(path)):
+                    self._faults[name] = "it is a link that leads out of the folder: not followed"
+                    continue
                 known = path.stat()
             except FileNotFoundError:
                 continue
@@ -173,9 +181,16 @@ class Folder:
     def _lines(self, file: _File, opened: BinaryIO, youngest: bool) -> Iterator[Piece]:
         first = _whole_lines(opened, 0)
         found = self._heads.find(first)
-        if found is None and self._rests(file, ENDLESS):
+        rests = found is None and self._rests(file, ENDLESS)
+        if rests:
             first = _whole_lines(opened, 0, ended=False)
             found = self._heads.find(first)
+        if found is None and rests and 0 < len(first) < self._heads.promised:
+            if youngest:
+                self._faults[file.name] = "it ends within the lines above its rows"
+            else:
+                # The logger goes on in another file: it is refused, as a record is that ends so.
+                yield from self._whole(file, opened)
         if found is None:
             # It has no row yet, as a logger leaves it that has just begun.
             if len(first) > MANY_LINES:
@@ -261,6 +276,17 @@ class Folder:
             self._resting[file.key] = (file.size, file.changed), now
             return False
         return now - since >= seconds
+
+
+def _ways_out(folder: Path) -> Callable[[Path], bool]:
+    """Whether a path leads out of a folder; each is followed once."""
+    inside = os.path.realpath(folder)
+
+    @cache
+    def leads_out(path: Path) -> bool:
+        return not Path(os.path.realpath(path)).is_relative_to(inside)
+
+    return leads_out
 
 
 def _whole_lines(opened: BinaryIO, offset: int, ended: bool = True) -> list[bytes]:

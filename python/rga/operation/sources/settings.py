@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 from urllib.parse import urlsplit
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, StrictBool, field_validator, model_validator
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError
 
@@ -27,9 +27,9 @@ class ClockSettings(SettingsTable):
         backlog: how long before they arrive readings may be from [s].
     """
 
-    check: bool = True
-    tolerance: Duration = 1800.0
-    backlog: Duration = 7 * 86_400.0
+    check: StrictBool = True
+    tolerance: Duration = Field("30 min", validate_default=True)
+    backlog: Duration = Field("7 d", validate_default=True)
 
     @property
     def rule(self) -> ClockRule | None:
@@ -112,7 +112,7 @@ class MqttSource(PayloadSettings):
     topics: Annotated[list[str], Field(min_length=1)]
     channel_topic: str | None = None
     credentials: Path | None = None
-    tell: bool = False
+    tell: StrictBool = False
 
     @property
     def stated(self) -> StatedFormat:
@@ -149,7 +149,7 @@ class FolderSource(PayloadSettings):
     kind: Literal["folder"]
     path: Path
     files: str = "*"
-    poll: Duration = 5.0
+    poll: Duration = Field("5 s", validate_default=True)
 
     @field_validator("files")
     @classmethod
@@ -185,7 +185,7 @@ class SqlSource(SourceSettings):
     channel: str | None = None
     value: str | None = None
     overlap: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 60.0
-    poll: Duration = 5.0
+    poll: Duration = Field("5 s", validate_default=True)
 
     @model_validator(mode="after")
     def _database(self) -> "SqlSource":
@@ -214,7 +214,7 @@ class OpcUaSource(SourceSettings):
     url: str
     nodes: Annotated[dict[str, str], Field(min_length=1)]
     credentials: Path | None = None
-    poll: Duration = 1.0
+    poll: Duration = Field("1 s", validate_default=True)
 
     @property
     def stated(self) -> StatedFormat:

@@ -29,7 +29,7 @@ class BrokerVisit:
         self._client = broker_client(name, settings.url, settings.credentials)
         self._client.on_connect, self._client.on_message = self._connected, self._came
         self._client.on_subscribe, self._client.on_connect_fail = self._subscribed, self._away
-        self.fault: str | None = "the broker does not answer"
+        self.fault: str | None = f"the broker {settings.url} does not answer"
 
     def start(self) -> None:
         """Connect, and take messages."""
@@ -44,7 +44,7 @@ class BrokerVisit:
 
     def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
         if reason.is_failure:
-            self.fault = f"the broker refuses: {reason}"
+            self.fault = f"the broker {self._settings.url} refuses: {reason}"
             return
         options = SubscribeOptions(qos=0)
         client.subscribe([(topic, options) for topic in self._settings.topics])
@@ -61,4 +61,4 @@ class BrokerVisit:
         self._inlet.receive([(message.topic, bytes(message.payload))])
 
     def _away(self, *_: Any) -> None:
-        self.fault = "the broker cannot be reached"
+        self.fault = f"the broker {self._settings.url} cannot be reached"

@@ -12,7 +12,8 @@ from rga.operation.disk.forecast import MAKE_ROOM, YearlyGrowth, yearly_growth
 from rga.operation.disk.room import DiskRoom
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.cells import cells_of
-from rga.operation.sources.clock import DAY, in_words
+from rga.operation.short_calibration import LEAST_CALIBRATED, is_short
+from rga.operation.sources.clock import in_words
 from rga.operation.trial.twin_files import TwinFiles
 from rga.operation.trial.what_came import WhatCame
 from rga.quantities import bytes_in_words
@@ -23,8 +24,6 @@ ENOUGH = 20
 QUIETER = 0.5
 #: median of the absolute value of the difference of two rows, in standard deviations of one
 _MEDIAN = 0.6745 * 2**0.5
-#: of a calibration that has seen what days differ by [s]
-LEAST_CALIBRATED = 3 * DAY
 
 
 def calibration_findings(
@@ -38,9 +37,9 @@ def calibration_findings(
         twin: its settings.
         calibrated: rows of its calibration.
     """
-    takes = calibrated * twin.rows.every
-    if model.context and takes < LEAST_CALIBRATED:
-        what = f"the calibration takes {in_words(takes)}: what later days bring is new to the twin"
+    if is_short(model, calibrated, twin.rows.every):
+        takes = in_words(calibrated * twin.rows.every)
+        what = f"the calibration takes {takes}: what later days bring is new to the twin"
         what += ", and alarms come more often than was asked"
         rows = ceil(LEAST_CALIBRATED / twin.rows.every)
         remedy = f"give {rows} calibration_rows or more: {in_words(LEAST_CALIBRATED)}"

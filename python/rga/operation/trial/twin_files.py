@@ -10,6 +10,7 @@ from rga.checking.finding import Finding
 from rga.jobs.begin import addressee_of, check_same
 from rga.model import Model, load_model
 from rga.operation.configuration import TwinSettings
+from rga.operation.inbox.row_length import check_length
 from rga.operation.rows.samples import Reader
 from rga.operation.served_twin import live_settings
 from rga.operation.sources.readers import readers_of
@@ -61,6 +62,7 @@ class TwinFiles:
             return
         with Inbox(directory, read_only=True) as inbox:
             known = inbox.addressee
+            check_length(inbox, self.settings.rows.grid.every, str(directory))
         if known is not None:
             name, seed = self.settings.name, self.settings.seed
             check_same(known, addressee_of(self.model, self.run, name, seed), directory)

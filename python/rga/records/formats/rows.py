@@ -115,11 +115,11 @@ def _check(
     *,
     ragged: bool,
 ) -> None:
-    """Refuses a row with another number of cells than the rest, and values without a name."""
+    """Refuses rows with fewer cells than names, or unlike the rest, and values without a name."""
     count = len(names)
     for number, column in enumerate(frame.columns):
-        named = number < count and names[number]
-        if named or frame[column].is_null().all():
+        has_name = number < count and names[number]
+        if has_name or frame[column].is_null().all():
             continue
         row = int(frame[column].is_not_null().arg_true()[0])
         if number < count and header is not None:
@@ -129,9 +129,10 @@ def _check(
         raise _other_length(int(lengths[row]), count, path, first + row)
     if ragged:
         return
-    # Rows may all end with a delimiter.
+    # Rows may all end with a delimiter, or lack what has no name.
     usual = lengths.filter(lengths > 0).mode().max() if (lengths > 0).any() else count
-    odd = ((lengths != usual) & (lengths > 0)).arg_true()
+    named = max((k for k, name in enumerate(names, start=1) if name), default=0)
+    odd = (((lengths != usual) | (lengths < named)) & (lengths > 0)).arg_true()
     if len(odd):
         row = int(odd[0])
         raise _other_length(int(lengths[row]), count, path, first + row)

@@ -232,7 +232,7 @@ class ContextCapture:
             InputError: the way to infer that the settings name cannot be had.
         """
         if not self._exchange.twin.state.latent:
-            return "all contexts are measured"
+            return self.rows.measured_in_words(rows)
         lesson, begun = self._lesson([(0, rows)]), None
         if self._own is not None:
             self._take(self._own(lesson))

@@ -99,6 +99,15 @@ class FollowedRows:
         self.noise = noise_of(self._stated, readings, self.ledger.stuck)
         return stuck
 
+    def measured_in_words(self, rows: int) -> str:
+        """Which contexts the first so many rows have values of, where none has to be inferred."""
+        came = np.isfinite(self.ledger.rows(0, rows).measured).any(axis=0)
+        there = {self._station.measured[column] for column in np.flatnonzero(came)}
+        lacking = [name for name in self._names if name not in there]
+        if not lacking:
+            return "all contexts are measured"
+        return f"contexts are measured, but no value came of {', '.join(lacking)}"
+
     def gap(self, first: int, end: int, share: float = 0.0) -> float:
         """Gap of rows over the gap to expect of a model that is off by a share [-]."""
         gaps, simulated = self.ledger.gaps(first, end), self.ledger.rows(first, end).simulated

@@ -61,8 +61,11 @@ pub(super) fn lowest(
     let mut sought = count.saturating_add(beyond);
     for _ in 0..SEARCHES {
         let found = space.grow(sought)?;
-        let Some((kept, shift)) = cut(&found, count) else {
+        if found.values.is_empty() {
             return Ok(found);
+        }
+        let Some((kept, shift)) = cut(&found, count) else {
+            break;
         };
         let below = motion.below(shift)?;
         if below == kept {
@@ -76,8 +79,7 @@ pub(super) fn lowest(
     ))
 }
 
-/// How many modes lie below a shift, at least as many as are wanted; nothing where no mode is left
-/// to be missed.
+/// How many modes lie below a shift, at least as many as are wanted; nothing where none is found.
 fn cut(found: &RitzPairs, count: usize) -> Option<(usize, f64)> {
     let squares: Vec<f64> = found.values.iter().map(|value| 1.0 / value).collect();
     let wanted = count.min(found.converged);

@@ -14,8 +14,9 @@ use crate::error::{Error, Result};
 const BLOCK: usize = 4;
 /// A vector that orthogonalisation leaves less of was in the space already.
 const DEPENDENT: f64 = 1e-10;
-/// One that it leaves less of has lost digits.
-const DELICATE: f64 = 1e-4;
+/// Part of a vector by which it may be off what K^-1 makes of its image. Rounding grows from step to
+/// step, by what orthogonalisation leaves.
+const OFF: f64 = 1e-10;
 /// Of such a vector of length one, what is left when all of it was rounding.
 const ALL_ROUNDING: f64 = 0.1;
 /// Vectors of the last three steps. Of a vector that keeps this part of its length as the space is
@@ -47,6 +48,8 @@ pub(crate) struct Lanczos<'a, P: Pencil> {
     pencil: &'a P,
     vectors: Vec<Vec<f64>>,
     stiff: Vec<Vec<f64>>,
+    /// By what part vectors may be off what K^-1 makes of `stiff`.
+    off: Vec<f64>,
     heavy: Vec<Vec<f64>>,
     /// V' M V, its lower triangle by rows.
     projected: Vec<Vec<f64>>,
@@ -75,6 +78,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
             pencil,
             vectors: Vec::new(),
             stiff: Vec::new(),
+            off: Vec::new(),
             heavy: Vec::new(),
             projected: Vec::new(),
             extended: 0,
@@ -159,23 +163,24 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     }
 
     fn add_one(&mut self, mut vector: Vec<f64>, mut stiff: Vec<f64>) -> Result<()> {
-        let before = dot(&vector, &stiff).max(0.0).sqrt();
-        let mut norm = self.orthogonalise(&mut vector, &mut stiff);
-        if norm <= DEPENDENT * before || norm == 0.0 {
+        let before = norm(&vector, &stiff);
+        let (mut left, mut off) = self.orthogonalise(&mut vector, &mut stiff);
+        if left <= DEPENDENT * before || left == 0.0 {
             return Ok(());
         }
-        if norm <= DELICATE * before {
+        if off > OFF {
             // What is left of both has lost digits, each its own: they belong together again.
-            stiff.iter_mut().for_each(|value| *value /= norm);
+            stiff.iter_mut().for_each(|value| *value /= left);
             vector.copy_from_slice(&stiff);
             self.pencil.solve(&mut vector)?;
-            norm = self.orthogonalise(&mut vector, &mut stiff);
-            if norm < ALL_ROUNDING {
+            (left, off) = self.orthogonalise(&mut vector, &mut stiff);
+            if left < ALL_ROUNDING {
                 return Ok(());
             }
         }
-        vector.iter_mut().for_each(|value| *value /= norm);
-        stiff.iter_mut().for_each(|value| *value /= norm);
+        self.off.push(off);
+        vector.iter_mut().for_each(|value| *value /= left);
+        stiff.iter_mut().for_each(|value| *value /= left);
         let heavy = self.pencil.mass_times(&vector);
         let mut row: Vec<f64> = self
             .vectors
@@ -191,29 +196,35 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     }
 
     /// Takes what lies in the space off a vector and its image under K, until that is no more than
-    /// rounding; the norm of what is left.
-    fn orthogonalise(&self, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
+    /// rounding; the norm of what is left, and by what part of it the two are off each other.
+    fn orthogonalise(&self, vector: &mut [f64], stiff: &mut [f64]) -> (f64, f64) {
+        let mut off = f64::EPSILON * norm(vector, stiff);
         // All that is more in what K^-1 M makes of the newest vectors is a part of these.
         let newest = self.vectors.len().saturating_sub(NEWEST);
-        let mut norm = self.take_off(newest, vector, stiff);
+        off += self.take_off(newest, vector, stiff);
+        let mut left = norm(vector, stiff);
         for _ in 0..PASSES {
-            let before = norm;
-            norm = self.take_off(0, vector, stiff);
-            if norm > KEPT * before {
+            let before = left;
+            off += self.take_off(0, vector, stiff);
+            left = norm(vector, stiff);
+            if left > KEPT * before {
                 break;
             }
         }
-        norm
+        (left, off / left)
     }
 
-    /// Takes what lies in the vectors from one on off, one after the other.
+    /// Takes what lies in the vectors from one on off, one after the other; by how much the vector
+    /// and its image are off each other then.
     fn take_off(&self, from: usize, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
-        for (other, other_stiff) in self.vectors.iter().zip(&self.stiff).skip(from) {
-            let share = dot(other_stiff, vector);
+        let mut off = 0.0;
+        for (at, other) in self.vectors.iter().enumerate().skip(from) {
+            let share = dot(&self.stiff[at], vector);
             subtract(vector, share, other);
-            subtract(stiff, share, other_stiff);
+            subtract(stiff, share, &self.stiff[at]);
+            off += share.abs() * self.off[at];
         }
-        dot(vector, stiff).max(0.0).sqrt()
+        off
     }
 
     /// The largest of those whose vectors K^-1 M has been applied to.
@@ -264,6 +275,11 @@ struct Within {
     values: Vec<f64>,
     shares: Vec<Vec<f64>>,
     converged: usize,
+}
+
+/// In the norm of K, of a vector and its image.
+fn norm(vector: &[f64], stiff: &[f64]) -> f64 {
+    dot(vector, stiff).max(0.0).sqrt()
 }
 
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {

@@ -7,7 +7,14 @@ import pytest
 
 from independent.modal_bridge import Hidden, Parked, measured
 from rga.diagnosis.modal.fit import fitted
-from rga.diagnosis.modal.likelihood import CHANGE_ERROR, ModalLikelihood, standing_errors
+from rga.diagnosis.modal.likelihood import (
+    CHANGE_ERROR,
+    LEVELS,
+    MODEL_ERROR,
+    USUALLY,
+    ModalLikelihood,
+    standing_errors,
+)
 from rga.diagnosis.modal.point_errors import FREE, WRONG
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
@@ -75,6 +82,29 @@ def test_squares_and_freedom_are_those_of_the_dense_covariance(
     residual = likelihood.residual(prediction)
     np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
     np.testing.assert_allclose(likelihood.freedom(prediction), freedom, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("error", [0.0, 0.015, 0.04])
+def test_the_level_is_the_likeliest_of_a_dense_covariance(
+    likelihood: ModalLikelihood, error: float
+) -> None:
+    readings = likelihood.readings
+    exact = likelihood.trials.predict({})
+    signs = np.resize([1.0, -1.0], len(readings.modes))
+    off = readings.log_f + error * signs
+    there = ModalLikelihood(ModalTrials(likelihood.trials.model, replace(readings, log_f=off)))
+    costs = []
+    for level in LEVELS:
+        cost = 0.5 * (np.log(level / MODEL_ERROR) / np.log(USUALLY)) ** 2
+        for mode in range(len(readings.modes)):
+            own = dense(there.with_level(level), mode, 0.0)
+            left = (off - exact.log_f)[:, mode]
+            left = left[np.isfinite(left)]
+            cost += 0.5 * float(left @ np.linalg.solve(own, left) + np.linalg.slogdet(own)[1])
+        costs.append(cost)
+    level = there.likeliest_level(exact)
+    assert level == LEVELS[int(np.argmin(costs))]
+    assert level == MODEL_ERROR if error == 0.0 else 0.6 * error < level < 1.4 * error
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """The life of an alarm: whatever happens, the book says what a small model of it says."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -120,6 +120,34 @@ def test_what_occurred_is_an_alarm_of_its_own_though_it_passed(desk: Desk) -> No
     assert changes == ["raised", "cleared", "raised"]
     desk.see()
     assert desk.states == [(1, "cleared")]
+
+
+def test_what_is_found_again_leaves_its_alarm_as_it_is(desk: Desk) -> None:
+    first = replace(wrong(GAP), sensors=("D1", "D2"))
+    desk.see(first, occurred=(first,))
+    desk.book.acknowledge(1, "Ada")
+    later = replace(first, words="since row 9", since=first.since + timedelta(hours=8))
+    desk.see(later, occurred=(replace(later, is_again=True, sensors=("D2",)),))
+    kept = desk.book.of(1)
+    assert (kept.state, kept.words, kept.since) == ("acknowledged", first.words, first.since)
+    assert len(desk.told) == 2
+    # Where it shows at more sensors it is to be seen anew, and has begun when it did.
+    desk.see(later, occurred=(replace(later, is_again=True, sensors=("D3", "D1")),))
+    grown = desk.book.of(1)
+    assert (grown.state, grown.words, grown.since) == ("raised", "since row 9", first.since)
+    assert grown.sensors == ("D1", "D2", "D3")
+    changes = [one.change for one in desk.book.life(1)]
+    assert changes == ["raised", "acknowledged", "raised"]
+
+
+@pytest.mark.parametrize("is_again", [False, True])
+def test_what_comes_when_all_was_well_begins_when_it_does(desk: Desk, is_again: bool) -> None:
+    desk.see(occurred=(wrong(GAP),))
+    desk.see()
+    assert desk.states == [(1, "cleared")]
+    since = wrong(GAP).since + timedelta(hours=8)
+    desk.see(occurred=(replace(wrong(GAP), since=since, is_again=is_again),))
+    assert desk.book.of(1).since == since
 
 
 def test_what_has_doubled_is_raised_anew(desk: Desk) -> None:

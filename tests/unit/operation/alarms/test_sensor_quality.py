@@ -9,6 +9,7 @@ import pytest
 from rga.model import Model, read_model
 from rga.operation.alarms.sensor_quality import SensorQuality
 from rga.operation.inbox.kept_cells import KeptCell
+from rga.operation.service_clock import moment_of
 
 EVERY, PATIENCE = 600.0, 1800.0
 NAMES = ("D1", "D2", "temperature")
@@ -57,6 +58,34 @@ def told(model: Model, spoil: Spoil, **more: Any) -> list[tuple[int, str, str]]:
         found += [(row, *one) for one in sorted(now - known)]
         known = now
     return found
+
+
+@pytest.mark.parametrize(
+    ("spoil", "cause", "words", "row"),
+    [
+        ("stuck", "stuck", "D2 has stood still at 0.5 m", 201),
+        ("outside", "out of range", "temperature reads 1e+06 degC, which its range of ", 100),
+        ("silent", "silent", "D2 sends nothing", 100),
+    ],
+)
+def test_an_alarm_says_the_value_and_since_when(
+    model: Model, spoil: str, cause: str, words: str, row: int
+) -> None:
+    quality, said = fresh(model), set()
+    for cell in cells(globals()[spoil], rows=600):
+        quality.take(cell)
+        for one in quality.conditions():
+            assert one.key.cause == cause
+            said.add((one.words, one.since))
+        # What is known after a restart says the same.
+        again = fresh(model, quality.to_json())
+        assert again.conditions() == quality.conditions()
+    ((words_said, since),) = said
+    assert words_said.startswith(words)
+    assert since == moment_of(row * round(EVERY * 1e6))
+    if cause == "out of range":
+        low, high = model.context["temperature"].range
+        assert words_said == f"{words}{low:g} to {high:g} degC does not hold"
 
 
 def nothing(row: int, values: dict[str, np.ndarray[Any, Any]]) -> None:
