@@ -312,4 +312,6 @@ def _worth_exchanging(
         if "points" in one.place
     }
     best = sorted(pairs, key=lambda number: -pairs[number])[:EXCHANGES]
-    return np.array([number not in pairs or number in best for number in range(len(candidates))])
+    return np.array(
+        [number not in pairs or number in best for number in range(len(candidates))], bool
+    )

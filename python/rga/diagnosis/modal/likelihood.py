@@ -188,7 +188,7 @@ class ModalLikelihood:
             parts.append(left)
         seen = np.flatnonzero(~self.hidden).tolist()
         parts += [self.shape_off(mode, prediction) for mode in seen]
-        at_points = self.trials.point_errors.off(prediction.usual)
+        at_points = self.trials.point_errors.off(prediction.recorded, prediction.mixing)
         parts += [at_points[mode] for mode in seen]
         return np.concatenate(parts)
 
@@ -208,11 +208,11 @@ class ModalLikelihood:
             )
             for one in (prediction, self._nothing)
         )
-        at_points, as_usual = (
-            float(self.trials.point_errors.freedom(one.usual)[~self.hidden].sum())
-            for one in (prediction, self._nothing)
+        at_points, of_structure = (
+            float(self.trials.point_errors.freedom(shapes, prediction.mixing)[~self.hidden].sum())
+            for shapes in (prediction.recorded, prediction.every)
         )
-        return of_changes + mixed - usual + at_points - as_usual
+        return of_changes + mixed - usual + at_points - of_structure
 
     def _doubts(self, prediction: Prediction) -> Iterator[tuple[int, FloatArray]]:
         """Modes with a standard deviation of what their changes may be off, whitened."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from rga import _core
 from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.modal.point_errors import PointErrors
+from rga.diagnosis.modal.point_errors import PointErrors, mixing
 from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.recorded import as_recorded, changes_shapes
 from rga.diagnosis.modal.stages import stages
@@ -47,7 +47,7 @@ AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
 
 
 @dataclass(frozen=True)
-class Solved:
+class Computed:
     """Modes of a structure as they are computed.
 
     Attributes:
@@ -74,8 +74,9 @@ class Prediction:
         number: of the computed mode that each is, there, int[modes].
         at_points: motion that is read at the points, with what sensors there make of it, averaged
             as the shapes are, float[modes, points].
-        usual: all modes of the model without more causes as sensors at the points record them,
-            float[computed, points].
+        every: motion of all computed modes of the structures at the points, float[k, points].
+        recorded: the same as sensors there record it, float[k, points].
+        mixing: how much of each may be in each measured one, float[modes, k].
         mac: of each with the measured shape, float[modes]; NaN without shape.
         doubtful: other pairings that are nearly as probable.
         parts: of other modes that may be in each shape at its points, float[k, points] each.
@@ -85,7 +86,9 @@ class Prediction:
     shapes: FloatArray
     number: IntArray
     at_points: FloatArray
-    usual: FloatArray
+    every: FloatArray
+    recorded: FloatArray
+    mixing: FloatArray
     mac: FloatArray
     doubtful: int
     parts: tuple[FloatArray, ...]
@@ -135,7 +138,7 @@ class ModalTrials(Generic[AnyWindows]):
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
         self._known: dict[str, Prediction] = {}
-        self._modes_known: dict[str, list[Solved]] = {}
+        self._modes_known: dict[str, list[Computed]] = {}
         self._near: _core.ModalReanalysis | None = None
         self._near = self._reanalysis()
 
@@ -153,16 +156,11 @@ class ModalTrials(Generic[AnyWindows]):
         without = ModalTrials(bare, self.readings).predict({})
         return np.asarray(self.predict({}).log_f - without.log_f)
 
-    @property
-    def usual(self) -> Solved:
-        """All modes of the model without more causes, under the contexts in the middle."""
-        return self._solved([])[self._middle]
-
     @cached_property
     def point_errors(self) -> PointErrors:
         """How far single points lie off what structures make of shapes."""
-        usual, number = self.usual, self._state([]).number
-        return PointErrors.of(self.readings.looks, usual.log_f, usual.at_points, number)
+        nothing = self.predict({})
+        return PointErrors(self.readings.looks, nothing.every, nothing.mixing)
 
     def predict(self, effects: Mapping[str, Effect]) -> Prediction:
         """The modes with more effects.
@@ -186,18 +184,20 @@ class ModalTrials(Generic[AnyWindows]):
             states.append(state)
         first = states[int(np.argmax(shares))]
         shapes, at_points = np.zeros_like(first.shapes), np.zeros_like(first.at_points)
-        usual = np.zeros_like(first.usual)
         for share, state in zip(shares, states, strict=True):
             turned = share * np.sign(np.einsum("mna,mna->m", state.shapes, first.shapes))
             shapes += turned[:, None, None] * state.shapes
             at_points += turned[:, None] * state.at_points
-            usual += share * state.usual
         return replace(
             first,
             log_f=log_f,
             shapes=shapes,
             at_points=at_points,
-            usual=usual,
+            every=np.concatenate([state.every for state in states]),
+            recorded=np.concatenate([state.recorded for state in states]),
+            mixing=np.concatenate(
+                [share * one.mixing for share, one in zip(shares, states, strict=True)], axis=1
+            ),
             doubtful=sum(one.doubtful for one in states),
         )
 
@@ -245,13 +245,12 @@ class ModalTrials(Generic[AnyWindows]):
     def _simulated(self, effects: Sequence[Effect]) -> Prediction:
         recording = [one for one in effects if one.points_named()]
         solved = self._solved([one for one in effects if not one.points_named()])
-        usual = self.usual.at_points
-        every = [np.concatenate([one.at_points, usual]) for one in solved]
-        recorded = as_recorded(every, recording, self.model.points, self._contexts)
+        true = [one.at_points for one in solved]
+        recorded = as_recorded(true, recording, self.model.points, self._contexts)
         states = [self._paired(*one) for one in zip(solved, recorded, strict=True)]
         return replace(states[self._middle], log_f=np.array([state.log_f for state in states]))
 
-    def _solved(self, effects: Sequence[Effect]) -> list[Solved]:
+    def _solved(self, effects: Sequence[Effect]) -> list[Computed]:
         """Modes under each of the contexts that stand for all; of few structures they are kept.
 
         What acts at points leaves them as they are: none is solved anew for it.
@@ -263,7 +262,7 @@ class ModalTrials(Generic[AnyWindows]):
                 del self._modes_known[next(iter(self._modes_known))]
         return self._modes_known[key]
 
-    def _each_solved(self, effects: Sequence[Effect]) -> Iterator[Solved]:
+    def _each_solved(self, effects: Sequence[Effect]) -> Iterator[Computed]:
         values: list[Values] = []
         rows = len(self._structures)
         for effect in effects:
@@ -292,21 +291,20 @@ class ModalTrials(Generic[AnyWindows]):
                 raise InputError("no computed mode is left", "modes", "state more masses")
             moving = shapes[:, : len(self.model.nodes), :3]
             log_f = np.log(np.sqrt(squares) / (2 * np.pi))
-            yield Solved(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
+            yield Computed(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
 
-    def _paired(self, solved: Solved, recorded: FloatArray) -> Prediction:
+    def _paired(self, solved: Computed, recorded: FloatArray) -> Prediction:
         looks, log_f = self.readings.looks, solved.log_f
-        at_points = recorded[: len(log_f)]
-        unlike = unlike_computed(looks, couplings(log_f), at_points)
-        pairing = paired(looks, np.exp(log_f), at_points, unlike=unlike)
+        unlike = unlike_computed(looks, couplings(log_f), recorded)
+        pairing = paired(looks, np.exp(log_f), recorded, unlike=unlike)
         if (pairing.computed < 0).any():
             lacking = self.readings.modes[int(np.argmin(pairing.computed))]
             raise InputError(
                 f"no computed mode is left for {lacking!r}", "modes", "state more masses"
             )
         number = pairing.computed
-        turn = mixture(looks, number, log_f, at_points)
-        at_points = at_points.copy()
+        turn = mixture(looks, number, log_f, recorded)
+        at_points = recorded.copy()
         at_points[number] = turn @ at_points[number]
         own = [at_points[one, look.at] for look, one in zip(looks, number, strict=True)]
         return Prediction(
@@ -314,7 +312,9 @@ class ModalTrials(Generic[AnyWindows]):
             np.tensordot(turn, solved.moving[number], 1),
             number,
             at_points[number],
-            recorded[len(log_f) :],
+            solved.at_points,
+            recorded,
+            mixing(looks, log_f, solved.at_points, number),
             np.array(
                 [
                     mac(look.shape, one) if len(look.at) else np.nan
