@@ -250,7 +250,7 @@ def test_one_process_plays_at_a_time(sound: Given, tmp_path: Path) -> None:
             assert other.ask(Note(who="Ada")) == 1
             with pytest.raises(InputError, match=f"process {os.getpid()} of .* writes there"):
                 other.play()
-            with pytest.raises(InputError, match="ask it by LiveTwin"):
+            with pytest.raises(InputError, match="ask the service or the program that plays it"):
                 carry_out(tmp_path, Note(who="Ada"))
             twin.play()
             assert len(history(other).record) == 100

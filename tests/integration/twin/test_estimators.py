@@ -283,7 +283,7 @@ def test_a_silent_channel_hides_no_change(small_stream: Stream, learned: JointEs
     later = Drawn(model, replace(record, readings=silent)).lesson(slice(105, 140))
     refined = learned.refined(later)
     (first, *_) = changes(learned.found, refined.found)
-    assert first.startswith("settlement of east -0.00")
+    assert first.startswith("settlement of east -2 mm")
     # What was found of the gauge is kept for its return.
     name = list(model.sensors)[5]
     assert refined.correction.gains[name] == pytest.approx(learned.correction.gains[name], rel=1e-3)

@@ -89,7 +89,7 @@ class Proposed:
 
 
 @dataclass(frozen=True)
-class Unexplained:
+class WithoutCause:
     """Diagnoses that ended in "unknown": how many, when the last did, and what it said."""
 
     count: int
@@ -138,7 +138,7 @@ def findings_of(view: RunView, number: int) -> str:
     return text
 
 
-def _unexplained(view: RunView, start: str | float) -> Unexplained | None:
+def _unexplained(view: RunView, start: str | float) -> WithoutCause | None:
     """What came of diagnoses that named nothing they know; None: none ended so."""
     ended = [(one.row, Findings.model_validate_json(one.findings)) for one in view.findings()]
     unknown = [(row, found) for row, found in ended if found.verdict == "unknown"]
@@ -146,7 +146,7 @@ def _unexplained(view: RunView, start: str | float) -> Unexplained | None:
         return None
     row, last = unknown[-1]
     time = view.measured_at([row]).time
-    return Unexplained(
+    return WithoutCause(
         len(unknown), moment(start, float(time[0]) if len(time) else 0.0), last.sentence()
     )
 
