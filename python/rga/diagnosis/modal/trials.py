@@ -248,6 +248,8 @@ class ModalTrials(Generic[AnyWindows]):
 
     def _paired(self, structure: Structure) -> Prediction:
         squares, shapes, *_ = self._modes(structure)
+        if not len(squares):
+            raise InputError("no computed mode is left", "modes", "state more masses")
         moving = shapes[:, : len(self.model.nodes), :3]
         at_points = self.at_points(moving)
         frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
