@@ -4,10 +4,11 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rga.model import Effect
-from rga.model.effects.sensors.sensor_fault import is_fault
+from rga.model.effects.sensors.sensor_fault import channel_words, is_fault
+from rga.model.parameter import listed
 
 if TYPE_CHECKING:
-    from rga.findings.schema import Cause, Findings
+    from rga.findings.schema import Cause, Findings, HeldOut
 
 #: rivals that a sentence names; it counts the others
 RIVALS = 3
@@ -19,12 +20,16 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     >>> factor = {"value": 1.25, "ci90": [1.2, 1.3]}
     >>> effect_words({"kind": "sensor_gain", "sensor": "S1", "factor": factor})
     'sensor gain of S1: factor 1.25 [1.2, 1.3]'
+    >>> effect_words({"kind": "sensor_gain", "point": "A1", "factor": -1.0})
+    'sensor gain at point A1: factor -1'
     """
     kind = Effect.vocabulary.get(effect["kind"], Effect)
-    place = place_words(
-        effect[name] for name in kind.place_fields() if effect.get(name) is not None
-    )
+    fields = {name: mark.of for name, mark in kind.place_fields().items() if effect.get(name)}
+    place = place_words(effect[name] for name in fields)
     of = f" of {place}" if place else ""
+    if set(fields.values()) == {"point"}:
+        several = len(listed(effect[next(iter(fields))])) > 1
+        of = f" at points {place}" if several else f" at point {place}"
     return f"{kind_words(effect['kind'])}{of}{kind.size_words(effect)}{_onset(effect)}"
 
 
@@ -70,20 +75,13 @@ def few_digits(value: float, digits: int = 2) -> str:
 
 def verdict_sentence(findings: "Findings") -> str:
     """The verdict in a few sentences."""
-    faults = [c.effect["sensor"] for c in findings.causes if is_fault(c.effect)]
+    faults = [channel_words(c.effect) for c in findings.causes if is_fault(c.effect)]
     causes = [c for c in findings.causes if not is_fault(c.effect)]
     sentences = []
     if causes:
         sentences.append(f"What the model leaves out: {'; and '.join(map(_cause_words, causes))}.")
         held = findings.gap.held_out
-        low, high = held.gain_ci90
-        moves = "falls" if held.gain > 0 else "rises"
-        unsure = "" if low > 0 else "; so the gain is not sure"
-        sentences.append(
-            f"By readings that no step saw the gap {moves} from {held.before:.3g} to "
-            f"{held.after:.3g} times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to "
-            f"{high:.3g}{unsure})."
-        )
+        sentences.append(_gain_words(held))
     elif findings.verdict == "nothing_wrong":
         sentences.append("Nothing is wrong with the model that these data could show.")
         if near := not_ruled_out(findings):
@@ -95,12 +93,25 @@ def verdict_sentence(findings: "Findings") -> str:
     elif findings.verdict == "unidentifiable":
         sentences.append("What was sought cannot show in these data.")
     if faults:
-        sentences.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
+        sentences.append(f"Channels that do not work: {', '.join(faults)}.")
     if findings.misfits and findings.verdict != "nothing_wrong":
         sentences.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
     if findings.verdict in ("partial", "unknown"):
         sentences.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
     return " ".join(sentences)
+
+
+def _gain_words(held: "HeldOut") -> str:
+    """What readings that no step saw say of causes."""
+    if held.gain == 0.0:
+        return f"By readings that no step saw the gap stays {held.before:.3g} times the noise."
+    low, high = held.gain_ci90
+    moves = "falls" if held.gain > 0 else "rises"
+    unsure = "" if low > 0 else "; so the gain is not sure"
+    return (
+        f"By readings that no step saw the gap {moves} from {held.before:.3g} to {held.after:.3g} "
+        f"times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to {high:.3g}{unsure})."
+    )
 
 
 def not_ruled_out(findings: "Findings") -> list[str]:

@@ -167,13 +167,26 @@ class Effect(BaseModel):
         """True where the place is a sensor: members and other channels do not feel it."""
         return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
 
+    @classmethod
+    @cache
+    def at_points(cls) -> bool:
+        """True where the place may be a point at which mode shapes are measured."""
+        return any(mark.of == "point" for mark in cls.place_fields().values())
+
     def sensors_named(self) -> list[str]:
         """The sensors of its place."""
+        return self._named("sensor")
+
+    def points_named(self) -> list[str]:
+        """The points of its place: it changes what is measured of mode shapes there."""
+        return self._named("point")
+
+    def _named(self, of: str) -> list[str]:
         return [
-            sensor
+            one
             for name, mark in self.place_fields().items()
-            if mark.of == "sensor"
-            for sensor in listed(getattr(self, name))
+            if mark.of == of
+            for one in listed(getattr(self, name))
         ]
 
     @classmethod

@@ -140,8 +140,8 @@ class Place:
 
     Attributes:
         of: "member", "group", "node", "support", "mass", "sensor", "context", "effect",
-            "material", or "" for a
-            word that stands in no part of the model (a degree of freedom, a direction).
+            "material", "point", "mode", or "" for a word that stands in no part of the model (a
+            degree of freedom, a direction).
     """
 
     of: str
@@ -162,12 +162,16 @@ class Prior(Protocol):
 class Normal:
     """A value that may lie on either side of `centre`.
 
+    Attributes:
+        trials: z at which a screening looks.
+
     >>> Normal(0.0, 2.0).value(1.5)
     3.0
     """
 
     centre: float
     spread: float
+    trials: tuple[float, ...] = (0.1,)
 
     def value(self, z: float) -> float:
         return self.centre + self.spread * z
@@ -175,13 +179,9 @@ class Normal:
     def z(self, value: float) -> float:
         return (value - self.centre) / self.spread
 
-    @property
-    def trials(self) -> tuple[float, ...]:
-        return (0.1,)
-
     def times(self, scale: float) -> "Normal":
         """The same of a value that is counted in a scale."""
-        return Normal(self.centre * scale, self.spread * scale)
+        return Normal(self.centre * scale, self.spread * scale, self.trials)
 
     def __str__(self) -> str:
         return _likely(self)

@@ -24,6 +24,11 @@ class Readings:
     temperature_change: FloatArray
     modes: dict[str, dict[str, int]] = field(default_factory=dict)
 
-    def at(self, sensors: str | list[str]) -> list[int]:
+    def at(self, sensors: str | list[str] | None) -> list[int]:
         """Columns of the sensors of a place."""
         return [self.columns[name] for name in listed(sensors)]
+
+    def at_points(self, points: str | list[str] | None) -> list[list[int]]:
+        """Columns of the shape of each mode, at those points of a place where it is read."""
+        named = listed(points)
+        return [[own[point] for point in named if point in own] for own in self.modes.values()]

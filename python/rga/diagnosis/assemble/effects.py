@@ -21,7 +21,16 @@ def effects_of(found: Found, record: Record) -> list[Effect]:
     effects = estimated_effects(found.fit, record)
     onsets = [one.onset for one in found.fit.hypotheses]
     lasting = [_drifting(*one, record) for one in zip(effects, onsets, strict=True)]
-    return [_dead(effect, least) for effect in lasting]
+    return [as_dead(effect, least) for effect in lasting]
+
+
+def as_dead(effect: Effect, least: float) -> Effect:
+    """A gain of nearly nothing reported as what it is: a channel that is dead."""
+    if isinstance(effect, SensorGain) and isinstance(effect.factor, Estimated):
+        low, high = effect.factor.ci90
+        if low < least < high or abs(effect.factor.value) < least:
+            return SensorFault(**effect.place, mode="dead", onset=effect.onset)
+    return effect
 
 
 def cause_name(model: Model, effect: Effect) -> str:
@@ -82,12 +91,3 @@ def _drifting(effect: Effect, onset: float | None, record: Record) -> Effect:
     rate = Estimated(value=offset.value / days, ci90=(low / days, high / days))
     drift = SensorDrift(sensor=effect.sensor, rate=rate.value).with_values({"rate": rate})
     return drift.model_copy(update={"onset": effect.onset})
-
-
-def _dead(effect: Effect, least: float) -> Effect:
-    """A gain of nearly nothing reported as what it is: a channel that is dead."""
-    if isinstance(effect, SensorGain) and isinstance(effect.factor, Estimated):
-        low, high = effect.factor.ci90
-        if low < least < high or abs(effect.factor.value) < least:
-            return SensorFault(sensor=effect.sensor, mode="dead", onset=effect.onset)
-    return effect

@@ -112,7 +112,7 @@ class MixedEvidence:
 
     def _shows(self, one: Hypothesis) -> bool:
         kind = one.kind
-        if not (kind.structural or kind.on_modes):
+        if not (kind.structural or kind.on_modes or one.at_points):
             return False
         if kind.overrides("change_values") and not self.likelihood.trials.follows_contexts:
             return False

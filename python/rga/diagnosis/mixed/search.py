@@ -9,8 +9,8 @@ from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
 from rga.diagnosis.modal.fit import shown_by
 from rga.diagnosis.modal.search import (
-    MODES_A_CAUSE,
     UNLIKELY,
+    borne,
     likeliest_onset,
     worth_fitting,
 )
@@ -82,11 +82,12 @@ def _searched(
     candidates = modal_hypotheses(evidence.likelihood.trials)
     naming = criteria.naming
     modes = len(evidence.likelihood.readings.modes)
-    more = min(naming.most_causes - len(current.hypotheses), max(1, modes // MODES_A_CAUSE))
+    of_record = len(current.hypotheses)
     first = promising = _promising(evidence, current, candidates, progress)
-    for number in range(more):
+    for number in range(naming.most_causes - of_record):
         if number:
-            promising = _promising(evidence, current, candidates, progress)
+            left = borne(candidates, current.hypotheses[of_record:], modes)
+            promising = _promising(evidence, current, left, progress)
         fits = _fitted(evidence, current, promising)
         best = max(fits, key=log_evidence, default=current)
         if best.log_evidence - current.log_evidence < naming.log_odds:
@@ -158,11 +159,11 @@ def _exchanged(current: MixedFit, evidence: MixedEvidence, screening: Screening)
 def _begun(current: MixedFit, evidence: MixedEvidence) -> MixedFit:
     """The causes of the record, those that act in all of it begun when the modes show them first.
 
-    A record that lies wholly behind an onset cannot tell it.
+    A record that lies wholly behind an onset cannot tell it, nor can shapes, which are means.
     """
     for number, one in enumerate(current.hypotheses):
         shown = evidence.on_modes(current.hypotheses)
-        if one.onset is not None or number not in shown:
+        if one.onset is not None or one.at_points or number not in shown:
             continue
         onset = likeliest_onset(current.modal, shown.index(number))
         if onset is None:

@@ -80,7 +80,8 @@ class ToldModes:
         shown = [number for number in range(len(modal.hypotheses)) if self._shows(number)]
         if shown:
             before, after = self._left_out
-            if after.mean() >= before.mean():
+            of_structure = any(not modal.hypotheses[number].at_points for number in shown)
+            if of_structure and after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
             words += thin(readings, causes=True) + doubtful_windows(readings)
         alone = [number for number in shown if not self._in_record(number)]

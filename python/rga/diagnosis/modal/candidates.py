@@ -1,5 +1,6 @@
 """What could be wrong of how a structure swings: hypotheses, and which are worth a fit."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -10,7 +11,7 @@ from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.fit import predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
-from rga.diagnosis.modal.trials import ModalTrials
+from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
 
@@ -22,6 +23,9 @@ BEGINNINGS, EITHER = 30, 5
 #: prospects that are simulated at the size that they promise, rounds of that, and the farthest
 #: that they may promise [prior sd]
 FARTHER, ROUNDS, FARTHEST = 40, 4, 6.0
+#: modes of which the shape must have been measured at a point; kinds at points are fitted at so
+#: many, and so many exchanges are simulated
+SHAPES, AT_POINTS, EXCHANGES = 2, 5, 8
 
 
 @dataclass(frozen=True)
@@ -44,17 +48,21 @@ class ModalProspect:
 def modal_hypotheses(trials: ModalTrials[ModalReadings]) -> list[Hypothesis]:
     """All hypotheses that natural frequencies and mode shapes can show.
 
-    Kinds that follow contexts are there where the structure is looked at under several.
+    Kinds that follow contexts are there where the structure is looked at under several; those at
+    points where shapes of two modes were measured, since anything explains the one.
     """
     model = trials.model
     kinds = []
     for kind in Effect.vocabulary.values():
-        if not (kind.structural or kind.on_modes) or (kind.on_sensors and not kind.on_modes):
+        of_structure = kind.structural and not kind.on_sensors
+        if not (of_structure or kind.on_modes or kind.at_points()):
             continue
         if kind.overrides("change_values") and not trials.follows_contexts:
             continue
         kinds.append(kind)
-    return hypotheses_of(kinds, model, (), list(trials.readings.contexts))
+    measured = Counter(point for look in trials.readings.looks for point in look.at.tolist())
+    points = [name for number, name in enumerate(model.points) if measured[number] >= SHAPES]
+    return hypotheses_of(kinds, model, (), list(trials.readings.contexts), points)
 
 
 def prospects(
@@ -81,6 +89,7 @@ def prospects(
     left = likelihood.residual(base)
     steps = _Steps.of(likelihood, left)
     worth = _worth_simulating(likelihood, candidates, left, steps)
+    worth &= _worth_exchanging(likelihood, candidates, base)
     several = []
     for number, (candidate, simulated) in enumerate(zip(candidates, worth, strict=True)):
         progress(number / max(len(candidates), 1))
@@ -96,7 +105,9 @@ def prospects(
             change = left - rest
             largest = max(largest, float(np.linalg.norm(change)))
             prior = float(np.square(trial).sum())
-            score = _score(left, rest, change, prior) + candidate.log_prior
+            # What has no size has no part of it either.
+            score = _score(left, rest, change, prior) if trial else _whole(left, rest)
+            score += candidate.log_prior
             score -= likelihood.freedom(there)
             options = [ModalProspect(candidate, trial, score, largest)]
             moved = (there.log_f - base.log_f).mean(0)
@@ -113,6 +124,7 @@ def prospects(
                 ModalProspect(best.hypothesis, best.z, best.score, max(largest, best.largest))
             )
     several.sort(key=lambda one: -one.score)
+    several = _without_many_at_points(several)
     nearest = [_farther(likelihood, one, (found, z), left) for one in several[:FARTHER]]
     progress(1.0)
     return sorted([*nearest, *several[FARTHER:]], key=lambda one: -one.score)
@@ -153,15 +165,34 @@ def _farther(
     return one
 
 
+def _without_many_at_points(several: Sequence[ModalProspect]) -> list[ModalProspect]:
+    """Prospects, the best first, of those at points the best few of each kind.
+
+    There are as many points as there are accelerometers: what none of them explains must not crowd
+    out what a structure may have.
+    """
+    count: Counter[str] = Counter()
+    kept = []
+    for one in several:
+        count[one.hypothesis.name] += one.hypothesis.at_points
+        if not one.hypothesis.at_points or count[one.hypothesis.name] <= AT_POINTS:
+            kept.append(one)
+    return kept
+
+
 def _score(left: FloatArray, rest: FloatArray, change: FloatArray, prior: float) -> float:
     """Log evidence of the trial, or of a part of its change where that promises more."""
     size = float(change @ change)
-    whole = 0.5 * float(left @ left - rest @ rest) - 0.5 * prior
+    whole = _whole(left, rest) - 0.5 * prior
     if size == 0.0:
         return whole
     along = float(change @ left)
     part = 0.5 * along**2 / (size + prior) if along > 0 else -np.inf
     return max(whole, min(part, 0.5 * along**2 / size)) - 0.5 * float(np.log1p(size))
+
+
+def _whole(left: FloatArray, rest: FloatArray) -> float:
+    return 0.5 * float(left @ left - rest @ rest)
 
 
 @dataclass(frozen=True)
@@ -254,3 +285,33 @@ def _worth_simulating(
         chosen[numbers[np.argsort(-scores, kind="stable")[:EXPLAINING]]] = True
         chosen[numbers[np.argsort(-sizes, kind="stable")[:MOVING]]] = True
     return chosen
+
+
+def _worth_exchanging(
+    likelihood: ModalLikelihood, candidates: Sequence[Hypothesis], base: Prediction
+) -> BoolArray:
+    """Of two points that may be exchanged, the pairs that would explain most; all others.
+
+    An exchange leaves a shape as long as it is: MAC alone tells what it explains, where every mode
+    keeps its pair.
+    """
+    points = {name: number for number, name in enumerate(likelihood.trials.model.points)}
+    gain = np.zeros((len(points), len(points)))
+    for mode, look in enumerate(likelihood.readings.looks):
+        own = base.at_points[mode, look.at]
+        length = float(own @ own)
+        if likelihood.hidden[mode] or length == 0.0:
+            continue
+        along = float(own @ look.shape)
+        moved = along - np.subtract.outer(own, own) * np.subtract.outer(look.shape, look.shape)
+        worth = (moved**2 - along**2) / length / likelihood.shape_spread(mode) ** 2
+        gain[np.ix_(look.at, look.at)] += worth
+    pairs = {
+        number: gain[tuple(points[name] for name in one.place["points"])]
+        for number, one in enumerate(candidates)
+        if "points" in one.place
+    }
+    best = sorted(pairs, key=lambda number: -pairs[number])[:EXCHANGES]
+    return np.array(
+        [number not in pairs or number in best for number in range(len(candidates))], bool
+    )

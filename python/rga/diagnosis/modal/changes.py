@@ -5,7 +5,10 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.trials import Prediction
 
+#: change of a MAC that is worth telling
+LIKENED = 0.005
 #: change of a frequency that is worth telling, as a share of it
 WORTH_TELLING = 5e-4
 
@@ -27,6 +30,8 @@ def moved_modes(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> str:
     after = fit.prediction
     if without is None or after is None:
         return ""
+    if fit.hypotheses[number].at_points:
+        return _likened_modes(likelihood, without, after)
     moved = np.expm1((after.log_f - without.log_f)[-1])
     if np.abs(moved).max() < WORTH_TELLING:
         return ""
@@ -36,3 +41,15 @@ def moved_modes(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> str:
         f"{names[k]} ({moved[k]:+.1%})" for k in most if abs(moved[k]) > 0.1 * abs(moved).max()
     ]
     return f"it moves {', '.join(shown)}"
+
+
+def _likened_modes(likelihood: ModalLikelihood, without: Prediction, after: Prediction) -> str:
+    """In words: the modes whose measured shapes are likest to the simulated ones by a cause."""
+    gained = np.nan_to_num(after.mac - without.mac)
+    names = likelihood.readings.modes
+    told = [
+        f"{names[k]} (MAC {without.mac[k]:.2f} without it, {after.mac[k]:.2f} with it)"
+        for k in np.argsort(-gained)[:5]
+        if gained[k] > max(LIKENED, 0.1 * gained.max())
+    ]
+    return f"with it these shapes are the simulated ones: {', '.join(told)}" if told else ""

@@ -61,6 +61,11 @@ class ModalFit:
         """Posterior standard deviation of each coordinate."""
         return np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information))))
 
+    @property
+    def points(self) -> list[str]:
+        """Points at which the last hypothesis acts on what is measured."""
+        return self.hypotheses[-1].points if self.hypotheses else []
+
     def of(self, number: int) -> slice:
         """The coordinates of one hypothesis."""
         counts = [len(one.priors) for one in self.hypotheses]

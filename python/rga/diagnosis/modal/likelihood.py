@@ -186,11 +186,10 @@ class ModalLikelihood:
                 along = float(white @ left) / square
                 left = left - (1.0 - 1.0 / np.sqrt(1.0 + square)) * along * white
             parts.append(left)
-        parts += [
-            self.shape_off(mode, prediction)
-            for mode in range(len(self._series))
-            if not self.hidden[mode]
-        ]
+        seen = np.flatnonzero(~self.hidden).tolist()
+        parts += [self.shape_off(mode, prediction) for mode in seen]
+        at_points = self.trials.point_errors.off(prediction.recorded, prediction.mixing)
+        parts += [at_points[mode] for mode in seen]
         return np.concatenate(parts)
 
     def freedom(self, prediction: Prediction) -> float:
@@ -209,7 +208,11 @@ class ModalLikelihood:
             )
             for one in (prediction, self._nothing)
         )
-        return of_changes + mixed - usual
+        at_points, of_structure = (
+            float(self.trials.point_errors.freedom(shapes, prediction.mixing)[~self.hidden].sum())
+            for shapes in (prediction.recorded, prediction.every)
+        )
+        return of_changes + mixed - usual + at_points - of_structure
 
     def _doubts(self, prediction: Prediction) -> Iterator[tuple[int, FloatArray]]:
         """Modes with a standard deviation of what their changes may be off, whitened."""
@@ -249,7 +252,7 @@ class ModalLikelihood:
     def _parts(self, mode: int, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
         """What of a measured shape is not along the predicted one, and what may be of others."""
         look = self.readings.looks[mode]
-        own = self.trials.at_points(prediction.shapes[[mode]])[0, look.at]
+        own = prediction.at_points[mode, look.at]
         return apart(look.shape, own, prediction.parts[mode])
 
     def shape_spread(self, mode: int) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis.assemble.effects import cause_name, content
+from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
@@ -100,8 +100,9 @@ def _diagnosed(
     found = _searched(model, readings, criteria, progress)
     if found.fit.hypotheses and readings.names_in_doubt:
         # A structure that has changed may have modes that are hardly those expected.
-        looks = found.fit.likelihood.trials.looks(effects_at(found.fit.hypotheses, found.fit.z))
-        again = ModalReadings.of(model, record, looks)
+        causes = effects_at(found.fit.hypotheses, found.fit.z)
+        looks = found.fit.likelihood.trials.looks(causes)
+        again = ModalReadings.of(model, record, looks, list(causes.values()))
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)
@@ -111,12 +112,16 @@ def _diagnosed(
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
     doubts = modes_off(likelihood, after)
-    if found.fit.hypotheses and left_out.after.mean() >= left_out.before.mean():
+    of_structure = any(not one.at_points for one in found.fit.hypotheses)
+    if of_structure and left_out.after.mean() >= left_out.before.mean():
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
     doubts += doubtful_windows(readings)
-    effects = [estimated(found.fit, number) for number in range(len(found.fit.hypotheses))]
+    effects = [
+        as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
+        for number in range(len(found.fit.hypotheses))
+    ]
     extended = model.extended({cause_name(model, effect): effect for effect in effects})
     findings = Findings(
         verdict=_verdict(found, bool(doubts), criteria),

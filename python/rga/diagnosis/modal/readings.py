@@ -1,13 +1,15 @@
 """Modes that were measured: frequencies window by window, their noise, and shapes."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.modal.recorded import looks_as_recorded, without_dead_points
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
+from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.pairing import Expected, mac
@@ -91,22 +93,27 @@ class ModalReadings(ModalWindows):
         model: Model,
         record: ModalRecord,
         changed: Mapping[int, Mapping[str, Expected]] | None = None,
+        effects: Sequence[Effect] = (),
     ) -> "ModalReadings":
         """The modes that a model expects, out of a record.
 
         Args:
             model: with modes.
-            record: of its structure.
+            record: of its structure; what it holds of points that the model says do not work is
+                not looked at.
             changed: what modes look like in windows in which the structure is known to be another
                 than in the model, by number of the window among those that are covered.
+            effects: beside those of the model, of which some may act on what points record.
 
         Raises:
             InputError: none was found, the model has no modes, or what drives the structure is
                 known in no window.
         """
         simulator = ModalSimulator(model)
-        expected, every = simulator.expected, len(np.unique(record.time))
-        record = _covered(record, simulator.needed, model)
+        acting = (*model.effects.values(), *effects)
+        expected = looks_as_recorded(simulator.expected, acting, model)
+        every = len(np.unique(record.time))
+        record = _covered(without_dead_points(record, model), simulator.needed, model)
         uncovered = every - len(np.unique(record.time))
         named = named_modes(record, model, expected, changed)
         check_units(named, record, expected, model)

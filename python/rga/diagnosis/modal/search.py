@@ -53,11 +53,11 @@ def search(
     naming = criteria.naming
     first: list[ModalProspect] = []
     modes = len(likelihood.readings.modes)
-    for number in range(min(naming.most_causes, max(1, modes // MODES_A_CAUSE))):
+    for number in range(naming.most_causes):
         words = "screening" if number == 0 else f"looking for cause {number + 1}"
         promising = prospects(
             likelihood,
-            candidates,
+            borne(candidates, current.hypotheses, modes),
             current.hypotheses,
             current.z,
             lambda done, words=words: progress(words, done),  # type: ignore[misc]
@@ -76,6 +76,19 @@ def search(
         rivals.append(tuple(_rivals(likelihood, current, number, first, candidates)))
     progress("weighing rivals", 1.0)
     return ModalFound(current, tuple(odds), tuple(rivals), first)
+
+
+def borne(
+    candidates: Sequence[Hypothesis], causes: Sequence[Hypothesis], modes: int
+) -> Sequence[Hypothesis]:
+    """Candidates of which so many modes bear another beside causes.
+
+    Those at points are borne by shapes: of a structure frequencies bear few.
+    """
+    of_structure = sum(not one.at_points for one in causes)
+    if of_structure < max(1, modes // MODES_A_CAUSE):
+        return candidates
+    return [one for one in candidates if one.at_points]
 
 
 def evidence(one: ModalFit) -> float:

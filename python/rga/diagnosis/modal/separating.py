@@ -19,8 +19,9 @@ AXES = ("x", "y", "z")
 
 
 def separating(likelihood: ModalLikelihood, one: ModalFit, other: ModalFit) -> str:
-    """In words: the point at which the shapes of two explanations differ most, or another test."""
-    advice = []
+    """In words: where shapes of two explanations differ most, a point to check, or another test."""
+    points = [point for fit in (one, other) for point in fit.points]
+    advice = [f"another accelerometer beside point {point}" for point in dict.fromkeys(points)]
     place = _place(likelihood, one, other)
     if place is not None:
         node, axis, mode, apart = place

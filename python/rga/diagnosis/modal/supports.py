@@ -6,6 +6,9 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.modal.readings import ModalWindows
+from rga.errors import InputError
+from rga.model.effect import Values
+from rga.model.schema import Model
 
 #: windows that stand for all of which only one context tells the structure
 SUPPORTS = 7
@@ -50,6 +53,34 @@ def supports(
     middle = sum(len(own) for own in found[:most]) + len(found[most]) // 2
     chosen, weights = zip(*(one for own in found for one in own), strict=True)
     return np.array(chosen, dtype=np.int64), np.array(weights).T, middle
+
+
+def window_contexts(model: Model, needed: set[str], readings: ModalWindows) -> Values:
+    """Contexts of the windows, float[windows] each; what was not measured lies in its middle.
+
+    Args:
+        model: says which there are, and in which range.
+        needed: those that drive the structure.
+        readings: of the windows.
+
+    Raises:
+        InputError: one that drives the structure was not measured.
+    """
+    found: Values = {}
+    for name, variable in model.context.items():
+        column = readings.contexts.get(name)
+        seen = np.zeros(0, dtype=bool) if column is None else np.isfinite(column)
+        if column is not None and seen.any():
+            found[name] = np.where(seen, column, column[seen].mean())
+        elif name in needed:
+            raise InputError(
+                f"context {name!r}, which drives the structure, is not in the modal record",
+                f"model {model.name!r}",
+                f"give a column {name} beside the frequencies",
+            )
+        else:
+            found[name] = np.full(len(readings.time), sum(variable.range) / 2)
+    return found
 
 
 def _along(column: FloatArray, own: BoolArray) -> list[tuple[int, FloatArray]]:

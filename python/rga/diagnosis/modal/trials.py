@@ -8,13 +8,15 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from rga import _core
-from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray
+from rga.diagnosis.modal.point_errors import PointErrors, mixing
 from rga.diagnosis.modal.readings import ModalWindows
+from rga.diagnosis.modal.recorded import as_recorded, changes_shapes
+from rga.diagnosis.modal.stages import stages
 from rga.diagnosis.modal.standing import brings_mass, without_standing
-from rga.diagnosis.modal.supports import supports
+from rga.diagnosis.modal.supports import supports, window_contexts
 from rga.errors import InputError
-from rga.model.effect import Effect, Values, blend
-from rga.model.parameter import Estimated
+from rga.model.effect import Effect, Values
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.simulation.modal.pairing import (
@@ -38,10 +40,27 @@ BEYOND = 4
 REACH = 3.0
 #: part of a frequency that a model leaves which is right in all that one can name
 RIGHT = 0.03
-#: modes that are looked at, at most, and states of the structure that are kept
-MOST, KEPT = 200, 512
+#: modes that are looked at, at most; states, and structures with all their modes, that are kept
+MOST, KEPT, SOLVED = 200, 512, 8
 
 AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
+
+
+@dataclass(frozen=True)
+class Computed:
+    """Modes of a structure as they are computed.
+
+    Attributes:
+        log_f: [ln Hz], float[computed].
+        moving: motion of all nodes along the axes, float[computed, nodes, 3].
+        at_points: at the points, float[computed, points].
+        shift: logarithm of the factor by which a clock reads frequencies larger.
+    """
+
+    log_f: FloatArray
+    moving: FloatArray
+    at_points: FloatArray
+    shift: float
 
 
 @dataclass(frozen=True)
@@ -53,6 +72,11 @@ class Prediction:
         shapes: motion of all nodes along the axes in the middle of what the contexts were,
             averaged over the windows, float[modes, nodes, 3].
         number: of the computed mode that each is, there, int[modes].
+        at_points: motion that is read at the points, with what sensors there make of it, averaged
+            as the shapes are, float[modes, points].
+        every: motion of all computed modes of the structures at the points, float[k, points].
+        recorded: the same as sensors there record it, float[k, points].
+        mixing: how much of each may be in each measured one, float[modes, k].
         mac: of each with the measured shape, float[modes]; NaN without shape.
         doubtful: other pairings that are nearly as probable.
         parts: of other modes that may be in each shape at its points, float[k, points] each.
@@ -61,6 +85,10 @@ class Prediction:
     log_f: FloatArray
     shapes: FloatArray
     number: IntArray
+    at_points: FloatArray
+    every: FloatArray
+    recorded: FloatArray
+    mixing: FloatArray
     mac: FloatArray
     doubtful: int
     parts: tuple[FloatArray, ...]
@@ -91,7 +119,7 @@ class ModalTrials(Generic[AnyWindows]):
         self._own = {name: one for name, one in model.effects.items() if _of_windows(one)}
         always = {name: one for name, one in model.effects.items() if name not in self._own}
         structures = ModalStructures(model.model_copy(update={"effects": always}))
-        self._given = _contexts(model, structures.needed, readings)
+        self._given = window_contexts(model, structures.needed, readings)
         driving = [self._given[name] for name in sorted(structures.needed)]
         standing = [one.weight(readings.time) for one in always.values() if _stands_late(one)]
         chosen, self._weights, self._middle = supports(readings, driving, standing)
@@ -110,6 +138,7 @@ class ModalTrials(Generic[AnyWindows]):
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
         self._known: dict[str, Prediction] = {}
+        self._modes_known: dict[str, list[Computed]] = {}
         self._near: _core.ModalReanalysis | None = None
         self._near = self._reanalysis()
 
@@ -127,6 +156,12 @@ class ModalTrials(Generic[AnyWindows]):
         without = ModalTrials(bare, self.readings).predict({})
         return np.asarray(self.predict({}).log_f - without.log_f)
 
+    @cached_property
+    def point_errors(self) -> PointErrors:
+        """How far single points lie off what structures make of shapes."""
+        nothing = self.predict({})
+        return PointErrors(self.readings.looks, nothing.every, nothing.mixing)
+
     def predict(self, effects: Mapping[str, Effect]) -> Prediction:
         """The modes with more effects.
 
@@ -142,52 +177,46 @@ class ModalTrials(Generic[AnyWindows]):
         """
         log_f = np.empty(self.readings.log_f.shape)
         shares, states = [], []
-        for own, acting in self._stages({**self._own, **effects}):
+        for own, acting in stages({**self._own, **effects}, self.readings.time):
             state = self._state(acting)
             log_f[own] = self._weights[own] @ state.log_f
             shares.append(float(own.mean()))
             states.append(state)
         first = states[int(np.argmax(shares))]
-        shapes = np.zeros_like(first.shapes)
+        shapes, at_points = np.zeros_like(first.shapes), np.zeros_like(first.at_points)
         for share, state in zip(shares, states, strict=True):
-            along = np.einsum("mna,mna->m", state.shapes, first.shapes)
-            shapes += share * np.sign(along)[:, None, None] * state.shapes
-        return Prediction(
-            log_f, shapes, first.number, first.mac, sum(one.doubtful for one in states), first.parts
+            turned = share * np.sign(np.einsum("mna,mna->m", state.shapes, first.shapes))
+            shapes += turned[:, None, None] * state.shapes
+            at_points += turned[:, None] * state.at_points
+        return replace(
+            first,
+            log_f=log_f,
+            shapes=shapes,
+            at_points=at_points,
+            every=np.concatenate([state.every for state in states]),
+            recorded=np.concatenate([state.recorded for state in states]),
+            mixing=np.concatenate(
+                [share * one.mixing for share, one in zip(shares, states, strict=True)], axis=1
+            ),
+            doubtful=sum(one.doubtful for one in states),
         )
 
     def looks(self, effects: Mapping[str, Effect]) -> dict[int, dict[str, Expected]]:
         """What modes look like where effects act, by number of the window and name of the mode."""
         found: dict[int, dict[str, Expected]] = {}
-        for own, acting in self._stages({**self._own, **effects}):
+        for own, acting in stages({**self._own, **effects}, self.readings.time):
             if not acting:
                 continue
             state = self._state(acting)
-            shapes = self.at_points(state.shapes)
             for window in np.flatnonzero(own):
                 near = np.exp(self._weights[window] @ state.log_f)
                 found[int(window)] = {
                     name: Expected(float(one), min(look.within, RIGHT), look.at, shape[look.at])
                     for name, look, one, shape in zip(
-                        self.readings.modes, self.readings.looks, near, shapes, strict=True
+                        self.readings.modes, self.readings.looks, near, state.at_points, strict=True
                     )
                 }
         return found
-
-    def _stages(self, effects: Mapping[str, Effect]) -> Iterator[tuple[BoolArray, list[Effect]]]:
-        """Windows, bool[windows], with the effects that act in them, each as it acts there."""
-        time = self.readings.time
-        late = [one for one in effects.values() if one.onset is not None]
-        weights = np.array([one.weight(time) for one in late]).reshape(len(late), len(time))
-        parts, of_window = np.unique(weights, axis=1, return_inverse=True)
-        of_window = np.asarray(of_window).ravel()
-        for number, acting in enumerate(parts.T):
-            some = iter(acting)
-            now = [
-                one if one.onset is None else _partly(one, float(next(some)))
-                for one in effects.values()
-            ]
-            yield of_window == number, [one for one in now if one is not None]
 
     def energies(self) -> tuple[FloatArray, FloatArray]:
         """Shares of members in the modes: derivatives of ln f by logarithms of what they are.
@@ -214,6 +243,26 @@ class ModalTrials(Generic[AnyWindows]):
         return self._known[key]
 
     def _simulated(self, effects: Sequence[Effect]) -> Prediction:
+        recording = [one for one in effects if one.points_named()]
+        solved = self._solved([one for one in effects if not one.points_named()])
+        true = [one.at_points for one in solved]
+        recorded = as_recorded(true, recording, self.model.points, self._contexts)
+        states = [self._paired(*one) for one in zip(solved, recorded, strict=True)]
+        return replace(states[self._middle], log_f=np.array([state.log_f for state in states]))
+
+    def _solved(self, effects: Sequence[Effect]) -> list[Computed]:
+        """Modes under each of the contexts that stand for all; of few structures they are kept.
+
+        What acts at points leaves them as they are: none is solved anew for it.
+        """
+        key = repr(effects)
+        if key not in self._modes_known:
+            self._modes_known[key] = list(self._each_solved(effects))
+            if len(self._modes_known) > SOLVED:
+                del self._modes_known[next(iter(self._modes_known))]
+        return self._modes_known[key]
+
+    def _each_solved(self, effects: Sequence[Effect]) -> Iterator[Computed]:
         values: list[Values] = []
         rows = len(self._structures)
         for effect in effects:
@@ -221,8 +270,6 @@ class ModalTrials(Generic[AnyWindows]):
             if effect.overrides("change_values"):
                 effect.change_values({**self._values, "": own}, own, self._contexts["time"])
             values.append(own)
-        log_f = []
-        middle: Prediction | None = None
         for row, structure in enumerate(self._structures):
             changed = structure
             if any(one.structural for one in effects):
@@ -234,41 +281,40 @@ class ModalTrials(Generic[AnyWindows]):
                     raise InputError(
                         "an effect leaves no natural frequency of its own", "modes", "leave it out"
                     )
-            state = self._paired(changed)
             factor = [
                 float(effect.frequency_factor(own)[row])
                 for effect, own in zip(effects, values, strict=True)
                 if effect.overrides("frequency_factor")
             ]
-            log_f.append(state.log_f + np.log(factor).sum())
-            if row == self._middle:
-                middle = state
-        assert middle is not None  # one of the rows is the middle one
-        return replace(middle, log_f=np.array(log_f))
+            squares, shapes, *_ = self._modes(changed)
+            if not len(squares):
+                raise InputError("no computed mode is left", "modes", "state more masses")
+            moving = shapes[:, : len(self.model.nodes), :3]
+            log_f = np.log(np.sqrt(squares) / (2 * np.pi))
+            yield Computed(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
 
-    def _paired(self, structure: Structure) -> Prediction:
-        squares, shapes, *_ = self._modes(structure)
-        if not len(squares):
-            raise InputError("no computed mode is left", "modes", "state more masses")
-        moving = shapes[:, : len(self.model.nodes), :3]
-        at_points = self.at_points(moving)
-        frequencies, looks = np.sqrt(squares) / (2 * np.pi), self.readings.looks
-        log_f = np.log(frequencies)
-        unlike = unlike_computed(looks, couplings(log_f), at_points)
-        pairing = paired(looks, frequencies, at_points, unlike=unlike)
+    def _paired(self, solved: Computed, recorded: FloatArray) -> Prediction:
+        looks, log_f = self.readings.looks, solved.log_f
+        unlike = unlike_computed(looks, couplings(log_f), recorded)
+        pairing = paired(looks, np.exp(log_f), recorded, unlike=unlike)
         if (pairing.computed < 0).any():
             lacking = self.readings.modes[int(np.argmin(pairing.computed))]
             raise InputError(
                 f"no computed mode is left for {lacking!r}", "modes", "state more masses"
             )
         number = pairing.computed
-        turn = mixture(looks, number, log_f, at_points)
+        turn = mixture(looks, number, log_f, recorded)
+        at_points = recorded.copy()
         at_points[number] = turn @ at_points[number]
         own = [at_points[one, look.at] for look, one in zip(looks, number, strict=True)]
         return Prediction(
-            log_f[number],
-            np.tensordot(turn, moving[number], 1),
+            log_f[number] + solved.shift,
+            np.tensordot(turn, solved.moving[number], 1),
             number,
+            at_points[number],
+            solved.at_points,
+            recorded,
+            mixing(looks, log_f, solved.at_points, number),
             np.array(
                 [
                     mac(look.shape, one) if len(look.at) else np.nan
@@ -335,46 +381,11 @@ class ModalTrials(Generic[AnyWindows]):
 
 
 def _of_windows(effect: Effect) -> bool:
-    """Whether an effect of the model acts in some windows only, or on what a clock says."""
+    """Whether an effect of the model acts in some windows only, or on what is recorded."""
     late = effect.onset is not None and effect.swinging() is effect
-    return late or effect.overrides("frequency_factor")
+    return late or effect.overrides("frequency_factor") or changes_shapes(effect)
 
 
 def _stands_late(effect: Effect) -> bool:
     """Whether an effect of the model brings a mass that stands there in some windows only."""
     return effect.onset is not None and brings_mass(effect)
-
-
-def _partly(effect: Effect, weight: float) -> Effect | None:
-    """An effect that acts as it does with a share of it; None where it does not yet."""
-    if weight <= 0.0:
-        return None
-    always = effect.model_copy(update={"onset": None, "profile": "step", "end": None})
-    if weight >= 1.0:
-        return always
-    values = {}
-    for name, parameter in effect.parameters().items():
-        own = getattr(effect, name)
-        own = own.value if isinstance(own, Estimated) else own
-        if parameter.neutral is not None and isinstance(own, float):
-            values[name] = float(blend(np.array([own]), parameter.neutral, np.array([weight]))[0])
-    return always.with_values(values)
-
-
-def _contexts(model: Model, needed: set[str], readings: AnyWindows) -> Values:
-    """Contexts of the windows, float[windows] each; what was not measured lies in its middle."""
-    found: Values = {}
-    for name, variable in model.context.items():
-        column = readings.contexts.get(name)
-        seen = np.zeros(0, dtype=bool) if column is None else np.isfinite(column)
-        if column is not None and seen.any():
-            found[name] = np.where(seen, column, column[seen].mean())
-        elif name in needed:
-            raise InputError(
-                f"context {name!r}, which drives the structure, is not in the modal record",
-                f"model {model.name!r}",
-                f"give a column {name} beside the frequencies",
-            )
-        else:
-            found[name] = np.full(len(readings.time), sum(variable.range) / 2)
-    return found

@@ -66,6 +66,16 @@ class Hypothesis:
         """The kind as in the model file."""
         return str(self.kind.model_fields["kind"].default)
 
+    @cached_property
+    def points(self) -> list[str]:
+        """The points at which it acts on what is measured of mode shapes, and on nothing else."""
+        return self._usual.points_named()
+
+    @property
+    def at_points(self) -> bool:
+        """Whether it acts at points."""
+        return bool(self.points)
+
     @property
     def log_prior(self) -> float:
         """Log prior: kinds, places of a kind, moments of an onset and profiles count alike."""
@@ -115,11 +125,16 @@ def hypotheses(model: Model, sensors: Sequence[str], measured: Collection[str]) 
 
 
 def hypotheses_of(
-    kinds: Sequence[type[Effect]], model: Model, sensors: Sequence[str], measured: Collection[str]
+    kinds: Sequence[type[Effect]],
+    model: Model,
+    sensors: Sequence[str],
+    measured: Collection[str],
+    points: Collection[str] = (),
 ) -> list[Hypothesis]:
-    """The same of some kinds."""
+    """The same of some kinds, and at points at which shapes were measured."""
+    present = {"sensor": sensors, "context": measured, "point": points}
     by_kind = {
-        kind: [place for place in kind.places(model) if _seen(kind, place, sensors, measured)]
+        kind: [place for place in kind.places(model) if _seen(kind, place, present)]
         for kind in kinds
     }
     acting = sum(bool(places) for places in by_kind.values())
@@ -131,9 +146,8 @@ def hypotheses_of(
 
 
 def _seen(
-    kind: type[Effect], place: Mapping[str, Any], sensors: Sequence[str], measured: Collection[str]
+    kind: type[Effect], place: Mapping[str, Any], present: Mapping[str, Collection[str]]
 ) -> bool:
-    present: dict[str, Collection[str]] = {"sensor": sensors, "context": measured}
     return all(
         one in present[mark.of]
         for field, mark in kind.place_fields().items()

@@ -165,7 +165,8 @@ class ModalSite:
         return {name: one for name, one in effects.items() if self._shows(one)}
 
     def _shows(self, effect: Effect) -> bool:
-        if not (effect.on_modes or (effect.structural and not effect.on_sensors)):
+        structural = effect.structural and not effect.on_sensors
+        if not (structural or effect.on_modes or effect.points_named()):
             return False
         where = repr((effect.kind, effect.place))
         if where not in self._known:
@@ -197,7 +198,7 @@ class ModalSite:
 
     def _scales(self, now: Prediction) -> FloatArray:
         """By which shapes come to the length and sign of the measured ones; zero without any."""
-        own = self._now.at_points(now.shapes)
+        own = now.at_points
         scales = np.zeros(len(self._looks))
         for mode, look in enumerate(self._looks):
             there = own[mode, look.at]

@@ -33,6 +33,8 @@ def named_parts(effects: Iterable[dict[str, Any]], model: Model) -> Named:
                 nodes.add(model.supports[name].node)
             elif of == "node" and name in model.nodes:
                 nodes.add(name)
+            elif of == "point" and name in model.points:
+                nodes.add(model.points[name].node)
     return Named(frozenset(members), frozenset(nodes))
 
 

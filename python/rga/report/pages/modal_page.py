@@ -6,11 +6,11 @@ from typing import Any
 from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.modal_arrays import ModalArrays
-from rga.findings.phrases import effect_words, place_words
-from rga.model import Effect
+from rga.findings.phrases import effect_words
 from rga.quantities import number
 from rga.report.pages.diagnosis_page import VERDICTS, provenance
 from rga.report.pages.modes_section import modes_section
+from rga.report.text.actions import actions
 
 
 def modal_page(findings: Findings, account: ModalArrays) -> dict[str, Any]:
@@ -52,6 +52,5 @@ def modal_page(findings: Findings, account: ModalArrays) -> dict[str, Any]:
 
 
 def _inspect(effect: dict[str, Any]) -> str:
-    kind = Effect.vocabulary[effect["kind"]]
-    place = place_words(effect[name] for name in kind.place_fields() if effect.get(name))
-    return kind.action.inspect.replace("{place}", place)
+    """The first thing that a cause calls for."""
+    return actions(effect)[0][1]

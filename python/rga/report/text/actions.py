@@ -52,5 +52,8 @@ def _where(effect: Mapping[str, Any]) -> str:
     said = [
         f"{OF.get(of, '')}{' and '.join(some)}" if of in PARTS else f"({', '.join(some)})"
         for of, some in names.items()
+        if of != "point"
     ]
+    if points := names.get("point"):
+        said.append(f"at point{'s' * (len(points) > 1)} {' and '.join(points)}")
     return " ".join(said) or "all channels"

@@ -79,7 +79,11 @@ class ModalSimulator:
         """
         found, of_row = self._side_by_side(contexts) or self._one_by_one(contexts)
         shown = found[of_row]
-        recorded = [one for one in self.model.effects.values() if one.on_sensors and one.on_modes]
+        recorded = [
+            one
+            for one in self.model.effects.values()
+            if (one.on_sensors and one.on_modes) or one.points_named()
+        ]
         if recorded:
             self._as_recorded(shown, recorded, self._structures.table(contexts))
         return shown
@@ -98,7 +102,7 @@ class ModalSimulator:
         return paired(list(self.expected.values()), frequencies, shapes), frequencies, shapes
 
     def _as_recorded(self, shown: FloatArray, effects: Sequence[Effect], given: Values) -> None:
-        """Change what sensors read as clocks and trackers do, in place."""
+        """Change what sensors read as clocks, trackers and accelerometers do, in place."""
         columns = {name: column for column, name in enumerate(self.model.modal_sensors)}
         modes: dict[str, dict[str, int]] = {}
         for name, sensor in self.model.modal_sensors.items():

@@ -7,8 +7,10 @@ import numpy as np
 
 from rga.model.action import Action
 from rga.model.effect import Effect, Values
-from rga.model.effects.sensors.places import Sensors
+from rga.model.effects.sensors.places import MaybePoints, MaybeSensors, check_one_place
+from rga.model.parameter import listed
 from rga.model.readings import Readings
+from rga.model.schema import Model
 
 
 def is_fault(effect: Mapping[str, Any]) -> bool:
@@ -20,10 +22,22 @@ def is_fault(effect: Mapping[str, Any]) -> bool:
     return effect.get("kind") == "sensor_fault"
 
 
+def channel_words(effect: Mapping[str, Any]) -> str:
+    """The channel that an effect, as in a model file, says does not work.
+
+    >>> channel_words({"kind": "sensor_fault", "point": "A1", "mode": "dead"})
+    'point A1'
+    """
+    return " and ".join(
+        [*listed(effect.get("sensor")), *(f"point {one}" for one in listed(effect.get("point")))]
+    )
+
+
 class SensorFault(Effect):
     """A sensor that does not work: its channel says nothing.
 
-    A diagnosis looks for these before it proposes effects of other kinds.
+    A gauge (`sensor`), or the accelerometer at a point (`point`): then no shape has a motion there,
+    whatever a record holds. A diagnosis looks for these before it proposes effects of other kinds.
 
     Attributes:
         mode: it shows nothing (dead), stands still (stuck), jumps away now and then (spiking),
@@ -33,16 +47,21 @@ class SensorFault(Effect):
 
     kind: Literal["sensor_fault"] = "sensor_fault"
     action = Action(
-        inspect="sensor {place}: cable, connector, amplifier",
+        inspect="the sensor {place}: cable, connector, amplifier",
         check="replace it, or leave the channel out",
     )
     on_sensors = True
-    sensor: Sensors
+    sensor: MaybeSensors = None
+    point: MaybePoints = None
     mode: Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
+
+    def check(self, model: Model) -> None:
+        check_one_place(self)
 
     def change_readings(self, readings: Readings, values: Values) -> None:
         faulty = np.flatnonzero(self.weight(readings.time) > 0)
-        readings.values[faulty[:, None], readings.at(self.sensor)] = np.nan
+        columns = sum(readings.at_points(self.point), readings.at(self.sensor))
+        readings.values[faulty[:, None], columns] = np.nan
 
     @classmethod
     def size_words(cls, effect: Mapping[str, Any]) -> str:
