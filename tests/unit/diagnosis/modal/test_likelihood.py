@@ -15,7 +15,6 @@ from rga.diagnosis.modal.likelihood import (
     ModalLikelihood,
     standing_errors,
 )
-from rga.diagnosis.modal.point_errors import FREE, WRONG
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.model.effects.members.elastic_modulus import ElasticModulus
@@ -48,15 +47,12 @@ def shape(
     return off, spread + parts.T @ parts
 
 
-def at_points(likelihood: ModalLikelihood, mode: int) -> tuple[np.ndarray, np.ndarray]:
+def at_points(
+    likelihood: ModalLikelihood, mode: int, prediction: Prediction
+) -> tuple[np.ndarray, np.ndarray]:
     """A measured shape, and the covariance of what mixtures of modes and sensors make of it."""
     errors, look = likelihood.trials.point_errors, likelihood.readings.looks[mode]
-    usual = likelihood.trials.usual
-    number = int(likelihood.trials.predict({}).number[mode])
-    shapes = usual.at_points[:, look.at] / np.linalg.norm(usual.at_points[number, look.at])
-    apart = np.abs(usual.log_f - usual.log_f[number])
-    sizes = [min(1.0, WRONG / (2.0 * one)) if one else FREE for one in apart]
-    parts = np.array(sizes)[:, None] * shapes
+    parts = prediction.mixing[mode][:, None] * prediction.recorded[:, look.at]
     return look.shape, parts.T @ parts + errors.spread**2 * np.eye(len(look.at))
 
 
@@ -77,7 +73,7 @@ def test_squares_and_freedom_are_those_of_the_dense_covariance(
         (off, own), (_, without) = (shape(likelihood, mode, one) for one in (prediction, nothing))
         square += float(off @ np.linalg.solve(own, off))
         freedom += 0.5 * float(np.linalg.slogdet(own)[1] - np.linalg.slogdet(without)[1])
-        off, own = at_points(likelihood, mode)
+        off, own = at_points(likelihood, mode, prediction)
         square += float(off @ np.linalg.solve(own, off))
     residual = likelihood.residual(prediction)
     np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)
@@ -136,7 +132,7 @@ def test_what_a_truck_changes_is_known_to_a_share_of_it(with_truck: ModalLikelih
         own = dense(with_truck, mode, 0.0) + np.outer(errors[seen, mode], errors[seen, mode])
         square += float(off[seen] @ np.linalg.solve(own, off[seen]))
         square += float((with_truck.shape_off(mode, prediction) ** 2).sum())
-        off, own = at_points(with_truck, mode)
+        off, own = at_points(with_truck, mode, prediction)
         square += float(off @ np.linalg.solve(own, off))
     residual = with_truck.residual(prediction)
     np.testing.assert_allclose(residual @ residual, square, rtol=1e-9)

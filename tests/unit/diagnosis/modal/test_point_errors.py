@@ -1,9 +1,11 @@
 """Errors of single points: beside dense covariances, and what they must not see."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
-from rga.diagnosis.modal.point_errors import LEAST, TIMES, PointErrors
+from rga.diagnosis.modal.point_errors import FREE, LEAST, TIMES, WRONG, PointErrors, mixing
 from rga.simulation.modal.pairing import Expected
 
 POINTS, COMPUTED = 12, 5
@@ -17,16 +19,29 @@ def shapes() -> np.ndarray:
     return np.sin(np.pi * np.arange(1, COMPUTED + 1)[:, None] * at)
 
 
-def errors(measured: np.ndarray, seen: int = POINTS) -> PointErrors:
-    """Of three modes, each measured at all points but the last few."""
-    at = np.arange(seen)
-    looks = [Expected(2.0, 0.1, at, one[:seen] / np.linalg.norm(one[:seen])) for one in measured]
-    return PointErrors.of(looks, LOG_F, shapes(), NUMBER)
+@dataclass(frozen=True)
+class Measured:
+    """Three modes, each measured at all points but the last few."""
 
+    looks: list[Expected]
+    errors: PointErrors
+    sizes: np.ndarray
 
-def covariance(found: PointErrors, mode: int, spread: float, recorded: np.ndarray) -> np.ndarray:
-    parts = found.sizes[mode][:, None] * recorded[:, found.looks[mode].at]
-    return np.asarray(parts.T @ parts + spread**2 * np.eye(parts.shape[1]))
+    @classmethod
+    def of(cls, measured: np.ndarray, seen: int = POINTS) -> "Measured":
+        at = np.arange(seen)
+        looks = [
+            Expected(2.0, 0.1, at, one[:seen] / np.linalg.norm(one[:seen])) for one in measured
+        ]
+        sizes = mixing(looks, LOG_F, shapes(), NUMBER)
+        return cls(looks, PointErrors(looks, shapes(), sizes), sizes)
+
+    def off(self, recorded: np.ndarray) -> list[np.ndarray]:
+        return self.errors.off(recorded, self.sizes)
+
+    def covariance(self, mode: int, spread: float, recorded: np.ndarray) -> np.ndarray:
+        parts = self.sizes[mode][:, None] * recorded[:, self.looks[mode].at]
+        return np.asarray(parts.T @ parts + spread**2 * np.eye(parts.shape[1]))
 
 
 def scattered() -> np.ndarray:
@@ -42,22 +57,23 @@ def turned(factor: float) -> np.ndarray:
 
 @pytest.mark.parametrize("factor", [1.0, -1.0, 0.3, 0.0])
 def test_squares_and_freedom_are_those_of_the_dense_covariance(factor: float) -> None:
-    found, recorded = errors(scattered()), turned(factor)
+    found, recorded = Measured.of(scattered()), turned(factor)
+    spread = found.errors.spread
     for mode, (off, freedom) in enumerate(
-        zip(found.off(recorded), found.freedom(recorded), strict=True)
+        zip(found.off(recorded), found.errors.freedom(recorded, found.sizes), strict=True)
     ):
-        own = covariance(found, mode, found.spread, recorded)
+        own = found.covariance(mode, spread, recorded)
         shape = found.looks[mode].shape
         np.testing.assert_allclose(off @ off, shape @ np.linalg.solve(own, shape), rtol=1e-9)
-        dense = np.linalg.slogdet(own / found.spread**2)[1]
+        dense = np.linalg.slogdet(own / spread**2)[1]
         np.testing.assert_allclose(freedom, 0.5 * dense, rtol=1e-9)
 
 
 def test_the_spread_follows_the_point_in_the_middle_left_out() -> None:
-    found = errors(scattered())
+    found = Measured.of(scattered())
     left = np.zeros((len(NUMBER), POINTS))
     for mode, look in enumerate(found.looks):
-        own = covariance(found, mode, LEAST, shapes())
+        own = found.covariance(mode, LEAST, shapes())
         for point in range(POINTS):
             others = np.arange(POINTS) != point
             told = own[point, others] @ np.linalg.solve(
@@ -65,8 +81,8 @@ def test_the_spread_follows_the_point_in_the_middle_left_out() -> None:
             )
             left[mode, point] = look.shape[point] - told
     middle = np.sqrt(np.median((left**2).mean(0)))
-    np.testing.assert_allclose(found.spread, TIMES * middle, rtol=1e-8)
-    assert errors(shapes()[NUMBER]).spread == LEAST
+    np.testing.assert_allclose(found.errors.spread, TIMES * middle, rtol=1e-8)
+    assert Measured.of(shapes()[NUMBER]).errors.spread == LEAST
 
 
 def test_a_mixture_of_modes_is_no_error_of_a_point_and_a_turned_sensor_is() -> None:
@@ -74,8 +90,8 @@ def test_a_mixture_of_modes_is_no_error_of_a_point_and_a_turned_sensor_is() -> N
     # distance of their frequencies.
     apart = LOG_F - LOG_F[NUMBER][:, None]
     mixed = np.divide(0.0625, apart, out=np.ones_like(apart), where=apart != 0.0)
-    structure = errors(mixed @ shapes())
-    sensor = errors(turned(-1.0)[NUMBER])
+    structure = Measured.of(mixed @ shapes())
+    sensor = Measured.of(turned(-1.0)[NUMBER])
     mixtures, off, known = (
         np.concatenate(one.off(recorded))
         for one, recorded in (
@@ -91,6 +107,16 @@ def test_a_mixture_of_modes_is_no_error_of_a_point_and_a_turned_sensor_is() -> N
 
 
 def test_where_points_are_few_mixtures_explain_all() -> None:
-    few = errors(turned(-1.0)[NUMBER], seen=5)
+    few = Measured.of(turned(-1.0)[NUMBER], seen=5)
     off = np.concatenate(few.off(shapes()))
     assert off @ off < off.size
+
+
+def test_modes_mix_by_what_is_wrong_over_the_distance_of_their_frequencies() -> None:
+    found = Measured.of(scattered())
+    for mode, number in enumerate(NUMBER):
+        length = np.linalg.norm(shapes()[number])
+        for other in range(COMPUTED):
+            apart = abs(LOG_F[other] - LOG_F[number])
+            share = FREE if other == number else min(1.0, WRONG / (2.0 * apart))
+            np.testing.assert_allclose(found.sizes[mode, other], share / length, rtol=1e-12)
