@@ -46,20 +46,19 @@ class ModalProspect:
 
 
 def modal_hypotheses(trials: ModalTrials[ModalReadings]) -> list[Hypothesis]:
-    """All hypotheses that natural frequencies and mode shapes can show.
+    """All hypotheses that natural frequencies and mode shapes can show, whatever the weather.
 
-    Kinds that follow contexts are there where the structure is looked at under several; those at
-    points where shapes of two modes were measured, since anything explains the one.
+    Those at points are there where shapes of two modes were measured, since anything explains the
+    one.
     """
     model = trials.model
     kinds = []
     for kind in Effect.vocabulary.values():
         of_structure = kind.structural and not kind.on_sensors
-        if not (of_structure or kind.on_modes or kind.at_points()):
+        if kind.overrides("change_values"):
             continue
-        if kind.overrides("change_values") and not trials.follows_contexts:
-            continue
-        kinds.append(kind)
+        if of_structure or kind.on_modes or kind.at_points():
+            kinds.append(kind)
     measured = Counter(point for look in trials.readings.looks for point in look.at.tolist())
     points = [name for number, name in enumerate(model.points) if measured[number] >= SHAPES]
     return hypotheses_of(kinds, model, (), list(trials.readings.contexts), points)

@@ -32,7 +32,8 @@ def moved_modes(likelihood: ModalLikelihood, fit: ModalFit, number: int) -> str:
         return ""
     if fit.hypotheses[number].at_points:
         return _likened_modes(likelihood, without, after)
-    moved = np.expm1((after.log_f - without.log_f)[-1])
+    moved = np.expm1(after.log_f - without.log_f)
+    moved = moved[np.argmax(np.abs(moved).sum(axis=1))]
     if np.abs(moved).max() < WORTH_TELLING:
         return ""
     most = np.argsort(-np.abs(moved))[:5]

@@ -28,8 +28,16 @@ class LeftOutModes:
 
 
 def squares(likelihood: ModalLikelihood, prediction: Prediction) -> FloatArray:
-    """Squared deviations of the frequencies, over what noise and model may be off, float[modes]."""
-    return np.asarray((likelihood.mean_off(prediction) / likelihood.mean_spread(prediction)) ** 2)
+    """Squared deviations of the frequencies, over what noise and model may be off, float[modes].
+
+    Those of the means over all windows; of single windows where a cause follows the temperature.
+    """
+    off, spread = likelihood.mean_off(prediction), likelihood.mean_spread(prediction)
+    if likelihood.explains_weather:
+        single = likelihood.readings.log_f - prediction.log_f
+        off = np.sqrt(np.nanmean(single**2, axis=0))
+        spread = np.hypot(spread, likelihood.readings.scatter)
+    return np.asarray((off / spread) ** 2)
 
 
 def left_out_modes(likelihood: ModalLikelihood, fit: ModalFit) -> LeftOutModes:

@@ -106,6 +106,17 @@ def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Predic
     return [words]
 
 
+def other_freezing(likelihood: ModalLikelihood) -> list[str]:
+    """In words: why what follows the temperature may be another part of the structure."""
+    if not likelihood.explains_weather:
+        return []
+    words = (
+        "bearings and soil that freeze make frequencies follow the temperature too, and were not "
+        "tried: look at these beside what is named"
+    )
+    return [words]
+
+
 def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
     """In words: what of the record says less than it could."""
     warnings = []

@@ -119,6 +119,8 @@ class ModalLikelihood:
         trials: what predicts them.
         level: error that a model makes of every frequency, as a share of it.
         hidden: modes that are not looked at, bool[modes].
+        weather: what a context may do to a mode beside what the model says, over its range, as a
+            share of the frequency.
     """
 
     def __init__(
@@ -126,15 +128,16 @@ class ModalLikelihood:
         trials: ModalTrials[ModalReadings],
         level: float = MODEL_ERROR,
         hidden: BoolArray | None = None,
+        weather: float = WEATHER,
     ) -> None:
-        self.trials, self.level = trials, level
+        self.trials, self.level, self.weather = trials, level, weather
         self.readings: ModalReadings = trials.readings
         count = len(self.readings.modes)
         self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
         # The error of the model is the same in all windows; what a context does beside is not.
         windows = len(self.readings.time)
-        weather = WEATHER * bent_lines(self.readings.weather, windows)
-        columns = np.concatenate([level * np.ones((1, windows)), weather])
+        bent = weather * bent_lines(self.readings.weather, windows)
+        columns = np.concatenate([level * np.ones((1, windows)), bent])
         self._standing = standing_errors(trials.by_standing)
         self._nothing = trials.predict({})
         self._series = [
@@ -151,11 +154,15 @@ class ModalLikelihood:
         """The same without one of the modes."""
         hidden = self.hidden.copy()
         hidden[mode] = True
-        return ModalLikelihood(self.trials, self.level, hidden)
+        return ModalLikelihood(self.trials, self.level, hidden, self.weather)
 
     def with_level(self, level: float) -> "ModalLikelihood":
         """The same with another error of the model."""
-        return ModalLikelihood(self.trials, level, self.hidden)
+        return ModalLikelihood(self.trials, level, self.hidden, self.weather)
+
+    def with_weather(self, weather: float) -> "ModalLikelihood":
+        """The same with another share that contexts may do beside what the model says."""
+        return ModalLikelihood(self.trials, self.level, self.hidden, weather)
 
     def likeliest_level(self, prediction: Prediction) -> float:
         """The error of the model at which a prediction is most probable, none below the usual."""
@@ -164,13 +171,28 @@ class ModalLikelihood:
     def _loss(self, prediction: Prediction) -> float:
         """Less the log posterior of the level, given a prediction."""
         residual = self.residual(prediction)
-        sizes = sum(
+        unusual = 0.5 * (np.log(self.level / MODEL_ERROR) / np.log(USUALLY)) ** 2
+        return float(0.5 * residual @ residual + self.freedom(prediction) + self._size + unusual)
+
+    @property
+    def explains_weather(self) -> bool:
+        """Whether a cause follows the temperature, so that little is left for the modes to do."""
+        return self.weather < WEATHER
+
+    @property
+    def of_nothing(self) -> float:
+        """Log density of the modes without any cause, less what all levels have alike."""
+        residual = self.residual(self._nothing)
+        return -0.5 * float(residual @ residual) - self._size
+
+    @property
+    def _size(self) -> float:
+        """Half the log determinant of the covariance, less that of the noise."""
+        return sum(
             series.log_size
             for series, hidden in zip(self._series, self.hidden, strict=True)
             if not hidden
         )
-        unusual = 0.5 * (np.log(self.level / MODEL_ERROR) / np.log(USUALLY)) ** 2
-        return float(0.5 * residual @ residual + self.freedom(prediction) + sizes + unusual)
 
     def residual(self, prediction: Prediction) -> FloatArray:
         """What a prediction misses, whitened: its square is that under the covariance.

@@ -11,8 +11,16 @@ from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, wi
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
-from rga.diagnosis.modal.doubts import doubtful_windows, drifting, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import (
+    doubtful_windows,
+    drifting,
+    other_freezing,
+    thin,
+    warnings_of,
+    weather,
+)
 from rga.diagnosis.modal.fit import ModalFit, fitted, shown_by
+from rga.diagnosis.modal.following import with_what_follows
 from rga.diagnosis.modal.likelihood import MODEL_ERROR, ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.remarks import apart_words, rival_words
@@ -117,6 +125,7 @@ def _diagnosed(
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
+    doubts += other_freezing(likelihood)
     doubts += doubtful_windows(readings)
     effects = [
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
@@ -156,7 +165,7 @@ def _searched(
     found = search(likelihood, candidates, criteria, progress)
     while (likelihood := shown_by(found.fit)).level > found.fit.likelihood.level:
         found = search(likelihood, candidates, criteria, progress)
-    return found
+    return with_what_follows(found, criteria, progress)
 
 
 def estimated(fit: ModalFit, number: int) -> Effect:

@@ -5,8 +5,15 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis.modal.recorded import changes_shapes
 from rga.model.effect import Effect, blend
 from rga.model.parameter import Estimated
+
+
+def of_windows(effect: Effect) -> bool:
+    """Whether an effect of the model acts in some windows only, or on what is recorded."""
+    late = effect.onset is not None and effect.swinging() is effect
+    return late or effect.overrides("frequency_factor") or changes_shapes(effect)
 
 
 def stages(

@@ -14,6 +14,11 @@ def brings_mass(effect: Effect) -> bool:
     return effect.swinging() not in (None, effect)
 
 
+def stands_late(effect: Effect) -> bool:
+    """Whether an effect brings a mass that stands there in some windows only."""
+    return effect.onset is not None and brings_mass(effect)
+
+
 def without_standing(model: Model) -> Model:
     """The model without the loads that bring their mass; itself where it has none."""
     if not any(map(brings_mass, model.effects.values())):

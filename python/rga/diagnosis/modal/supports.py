@@ -11,7 +11,7 @@ from rga.model.effect import Values
 from rga.model.schema import Model
 
 #: windows that stand for all of which only one context tells the structure
-SUPPORTS = 7
+SUPPORTS = 13
 #: values of a context that are told apart one by one, and combinations of such, at most
 FEW, COMBINATIONS = 4, 12
 

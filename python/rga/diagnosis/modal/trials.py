@@ -11,12 +11,13 @@ from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.modal.point_errors import PointErrors, mixing
 from rga.diagnosis.modal.readings import ModalWindows
-from rga.diagnosis.modal.recorded import as_recorded, changes_shapes
-from rga.diagnosis.modal.stages import stages
-from rga.diagnosis.modal.standing import brings_mass, without_standing
+from rga.diagnosis.modal.recorded import as_recorded
+from rga.diagnosis.modal.stages import of_windows, stages
+from rga.diagnosis.modal.standing import stands_late, without_standing
 from rga.diagnosis.modal.supports import supports, window_contexts
 from rga.errors import InputError
 from rga.model.effect import Effect, Values
+from rga.model.effects.members.stiffness_temperature import contexts_of_temperature
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.simulation.modal.pairing import (
@@ -116,12 +117,13 @@ class ModalTrials(Generic[AnyWindows]):
         axes = np.array([one.direction for one in points], dtype=float).reshape(-1, 3)
         self._axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
         # What begins late, or is in the clock, acts window by window as hypotheses do.
-        self._own = {name: one for name, one in model.effects.items() if _of_windows(one)}
+        self._own = {name: one for name, one in model.effects.items() if of_windows(one)}
         always = {name: one for name, one in model.effects.items() if name not in self._own}
         structures = ModalStructures(model.model_copy(update={"effects": always}))
         self._given = window_contexts(model, structures.needed, readings)
-        driving = [self._given[name] for name in sorted(structures.needed)]
-        standing = [one.weight(readings.time) for one in always.values() if _stands_late(one)]
+        following = structures.needed or contexts_of_temperature(model)
+        driving = [self._given[name] for name in sorted(following)]
+        standing = [one.weight(readings.time) for one in always.values() if stands_late(one)]
         chosen, self._weights, self._middle = supports(readings, driving, standing)
         self._contexts: Values = {name: column[chosen] for name, column in self._given.items()} | {
             "time": readings.time[chosen]
@@ -144,7 +146,7 @@ class ModalTrials(Generic[AnyWindows]):
 
     @property
     def follows_contexts(self) -> bool:
-        """Whether contexts change the structure, and so more than one of them is looked at."""
+        """Whether contexts may change the structure, and so more than one of them is looked at."""
         return len(self._structures) > 1
 
     @cached_property
@@ -247,7 +249,10 @@ class ModalTrials(Generic[AnyWindows]):
         solved = self._solved([one for one in effects if not one.points_named()])
         true = [one.at_points for one in solved]
         recorded = as_recorded(true, recording, self.model.points, self._contexts)
-        states = [self._paired(*one) for one in zip(solved, recorded, strict=True)]
+        states: list[Prediction] = []
+        for row, (one, seen) in enumerate(zip(solved, recorded, strict=True)):
+            again = row > 0 and one is solved[row - 1] and np.array_equal(seen, recorded[row - 1])
+            states.append(states[-1] if again else self._paired(one, seen))
         return replace(states[self._middle], log_f=np.array([state.log_f for state in states]))
 
     def _solved(self, effects: Sequence[Effect]) -> list[Computed]:
@@ -270,28 +275,37 @@ class ModalTrials(Generic[AnyWindows]):
             if effect.overrides("change_values"):
                 effect.change_values({**self._values, "": own}, own, self._contexts["time"])
             values.append(own)
+        known: dict[str, Computed] = {}
         for row, structure in enumerate(self._structures):
-            changed = structure
-            if any(one.structural for one in effects):
-                changed = structure.copy()
-                for effect, own in zip(effects, values, strict=True):
-                    if effect.structural:
-                        effect.change_structure(changed, {k: float(c[row]) for k, c in own.items()})
-                if not changed.linear:
-                    raise InputError(
-                        "an effect leaves no natural frequency of its own", "modes", "leave it out"
-                    )
-            factor = [
-                float(effect.frequency_factor(own)[row])
-                for effect, own in zip(effects, values, strict=True)
-                if effect.overrides("frequency_factor")
-            ]
-            squares, shapes, *_ = self._modes(changed)
-            if not len(squares):
-                raise InputError("no computed mode is left", "modes", "state more masses")
-            moving = shapes[:, : len(self.model.nodes), :3]
-            log_f = np.log(np.sqrt(squares) / (2 * np.pi))
-            yield Computed(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
+            here = [{name: column[[row]] for name, column in own.items()} for own in values]
+            # Where nothing follows a context, all rows have one structure.
+            key = repr((id(structure), [[float(x[0]) for x in own.values()] for own in here]))
+            if key not in known:
+                known[key] = self._computed(structure, list(zip(effects, here, strict=True)))
+            yield known[key]
+
+    def _computed(self, structure: Structure, acting: Sequence[tuple[Effect, Values]]) -> Computed:
+        """Modes of a structure with effects, each with its values in one row."""
+        if any(effect.structural for effect, _ in acting):
+            structure = structure.copy()
+            for effect, own in acting:
+                if effect.structural:
+                    effect.change_structure(structure, {k: float(c[0]) for k, c in own.items()})
+            if not structure.linear:
+                raise InputError(
+                    "an effect leaves no natural frequency of its own", "modes", "leave it out"
+                )
+        factor = [
+            float(effect.frequency_factor(own)[0])
+            for effect, own in acting
+            if effect.overrides("frequency_factor")
+        ]
+        squares, shapes, *_ = self._modes(structure)
+        if not len(squares):
+            raise InputError("no computed mode is left", "modes", "state more masses")
+        moving = shapes[:, : len(self.model.nodes), :3]
+        log_f = np.log(np.sqrt(squares) / (2 * np.pi))
+        return Computed(log_f, moving, self.at_points(moving), float(np.log(factor).sum()))
 
     def _paired(self, solved: Computed, recorded: FloatArray) -> Prediction:
         looks, log_f = self.readings.looks, solved.log_f
@@ -378,14 +392,3 @@ class ModalTrials(Generic[AnyWindows]):
             return _core.ModalReanalysis(structure.arrays, structure.masses, self._count)
         except (_core.UnstableStructure, _core.InvalidInput) as error:
             raise refused(structure, error) from None
-
-
-def _of_windows(effect: Effect) -> bool:
-    """Whether an effect of the model acts in some windows only, or on what is recorded."""
-    late = effect.onset is not None and effect.swinging() is effect
-    return late or effect.overrides("frequency_factor") or changes_shapes(effect)
-
-
-def _stands_late(effect: Effect) -> bool:
-    """Whether an effect of the model brings a mass that stands there in some windows only."""
-    return effect.onset is not None and brings_mass(effect)

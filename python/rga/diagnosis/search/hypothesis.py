@@ -95,9 +95,11 @@ class Hypothesis:
         return self.beginning(other.onset, other.profile, other.end)
 
     def same_place(self, other: "Hypothesis") -> bool:
-        """True for the same kind at the same place with the same parameters."""
-        alike = self.kind is other.kind and self.place == other.place
-        return alike and self.priors.keys() == other.priors.keys()
+        """True for the same kind at the same place, where one has all parameters of the other."""
+        if self.kind is not other.kind or self.place != other.place:
+            return False
+        own, others = self.priors.keys(), other.priors.keys()
+        return own <= others or others <= own
 
     def contains(self, other: "Hypothesis") -> bool:
         """True where this is the same kind at several places, one of which is the other's."""

@@ -11,11 +11,15 @@ from rga.model.action import Action
 from rga.model.effect import Effect, Values
 from rga.model.effects.members.positive import positive
 from rga.model.effects.temperature.temperature import Temperature
+from rga.model.effects.temperature.thermal_lag import ThermalLag
 from rga.model.parameter import Driven, Normal, Parameter, Place, Prior, Value, listed
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
 USUAL = Normal(0.0, 0.003)
+#: asphalt and soil that freeze stiffen a deck by per cent a kelvin, about 0 degC (Peeters and De
+#: Roeck, One-year monitoring of the Z24-Bridge, Earthquake Engng Struct. Dyn. 30, 2001)
+FROST, FREEZING = Normal(0.0, 0.01), Normal(0.0, 3.0)
 #: change of the stiffness within a kelvin beyond which it is a slip: of per cent for a share
 STEEPEST = 0.5
 
@@ -43,7 +47,10 @@ class StiffnessTemperature(Effect):
         check="the temperature sensor, and whether the deck or its surfacing bears a share",
         test="the same known load on a cold and on a warm day",
     )
-    usual = f"rate {USUAL} 1/K: a judgement"
+    usual = (
+        f"rate {USUAL} 1/K: a judgement; in modes also below {FROST} 1/K with kink {FREEZING} "
+        "degC: asphalt that freezes, as on the bridge Z24"
+    )
     structural = True
     group: Annotated[str | list[str], Place("group")]
     rate: Annotated[
@@ -66,7 +73,7 @@ class StiffnessTemperature(Effect):
         several = [model.members[name] for one in listed(self.group) for name in model.groups[one]]
         if self.of == "EI" and all(member.kind != "frame" for member in several):
             raise ValueError("no member of the group bends, so none has an EI: give of EA or both")
-        driven = _driven_temperatures(model)
+        driven = driven_temperatures(model)
         contexts = sorted({delta.context for delta in driven})
         if len(contexts) != 1:
             raise ValueError(
@@ -81,13 +88,18 @@ class StiffnessTemperature(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        driven = _driven_temperatures(model)
+        driven = driven_temperatures(model)
         if len({(delta.context, delta.minus) for delta in driven}) == 1:
             yield from ({"group": group} for group in model.groups)
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         return {"rate": USUAL}
+
+    @classmethod
+    def forms_on_modes(cls, model: Model, place: Mapping[str, Any]) -> list[dict[str, Prior]]:
+        """Over seasons frequencies show a kink."""
+        return [{"rate": USUAL}, {"rate": USUAL, "below": FROST, "kink": FREEZING}]
 
     def change_values(
         self, all_values: dict[str, Values], values: Values, time: FloatArray
@@ -111,7 +123,14 @@ class StiffnessTemperature(Effect):
             each[chosen] *= value["factor"]
 
 
-def _driven_temperatures(model: Model) -> list[Driven]:
+def driven_temperatures(model: Model) -> list[Driven]:
     """What drives the temperature effects of a model."""
     deltas = (one.delta for one in model.effects.values() if isinstance(one, Temperature))
     return [delta for delta in deltas if isinstance(delta, Driven)]
+
+
+def contexts_of_temperature(model: Model) -> set[str]:
+    """Contexts whose rows tell how warm members are; none where these are late behind them."""
+    if any(isinstance(one, ThermalLag) for one in model.effects.values()):
+        return set()
+    return {delta.context for delta in driven_temperatures(model)}
