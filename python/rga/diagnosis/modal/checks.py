@@ -30,14 +30,16 @@ class LeftOutModes:
 def squares(likelihood: ModalLikelihood, prediction: Prediction) -> FloatArray:
     """Squared deviations of the frequencies, over what noise and model may be off, float[modes].
 
-    Those of the means over all windows; of single windows where a cause follows the temperature.
+    Those of the means over all windows; where a cause follows the temperature, in the middle of
+    these and of those of single windows from the mean.
     """
-    off, spread = likelihood.mean_off(prediction), likelihood.mean_spread(prediction)
-    if likelihood.explains_weather:
-        single = likelihood.readings.log_f - prediction.log_f
-        off = np.sqrt(np.nanmean(single**2, axis=0))
-        spread = np.hypot(spread, likelihood.readings.scatter)
-    return np.asarray((off / spread) ** 2)
+    off = likelihood.mean_off(prediction)
+    of_means = (off / likelihood.mean_spread(prediction)) ** 2
+    if not likelihood.explains_weather:
+        return np.asarray(of_means)
+    readings = likelihood.readings
+    single = np.nanmean((readings.log_f - prediction.log_f - off) ** 2, axis=0)
+    return np.asarray(0.5 * (of_means + single / readings.scatter**2))
 
 
 def left_out_modes(likelihood: ModalLikelihood, fit: ModalFit) -> LeftOutModes:
