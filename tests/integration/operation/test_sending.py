@@ -138,3 +138,35 @@ def test_a_slow_service_is_sent_nothing_many_times(
     copies = Counter(listener.came)
     assert set(copies) == set(range(12))
     assert max(copies.values()) <= 4
+
+
+def test_what_waits_in_a_broker_is_bounded(
+    mosquitto: Mosquitto, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A service that is killed again and again fetches a few between."""
+    for name, value in (("UNACKNOWLEDGED", 0.1), ("AGAIN", 0.2), ("MOST_OPEN", 20)):
+        monkeypatch.setattr(senders, name, value)
+    packets, fetched, waiting, kept = 60, 0, [0], set[int]()
+    sender = BrokerSender(f"{mosquitto.url}/{TOPIC}")
+    listener = Listener(mosquitto.port, answers=False)
+    sender.send(b"0", Number("s", 0))
+    with ThreadPoolExecutor() as pool:
+
+        def feed() -> None:
+            for k in range(1, packets):
+                sender.send(str(k).encode(), Number("s", k))
+            sender.finish()
+
+        feeding = pool.submit(feed)
+        while not feeding.done():
+            time.sleep(0.4)
+            waiting.append(len(listener.came) - fetched)
+            kept |= set(listener.came[fetched : fetched + 8])
+            fetched += min(8, waiting[-1])
+            first_missing = next(k for k in range(packets + 1) if k not in kept)
+            listener.acknowledge(first_missing)
+        feeding.result()
+    listener.stop()
+    assert kept == set(range(packets))
+    # Each twice, and the first once more every time that it is waited for.
+    assert max(waiting) <= 2 * 20 + 5

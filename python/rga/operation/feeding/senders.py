@@ -28,6 +28,8 @@ SILENT = 5.0
 #: packets that are on their way at most: mosquitto as it comes drops what waits beyond a thousand,
 #: and each of these may wait there twice, the first of them more often
 MOST_OPEN = 400
+#: times that the first is sent again at that pace, before it is sent ever more seldom
+OFTEN = 10
 
 
 class Sender(Protocol):
@@ -163,7 +165,9 @@ class BrokerSender:
 
     A broker that was killed has forgotten messages that it had taken, and what is sent again behind
     later packets comes too late for its row. So after each break, and where nothing is acknowledged
-    any more, the first packet is sent until the service has it, then all that come after it.
+    any more, the first packet is sent until the service has it, then all that come after it. What a
+    service that is away or slow has not fetched waits in the broker all the same: all are sent
+    again only where the service has fetched what was sent again before.
 
     Args:
         url: of the broker and the topic, mqtt://host:port/rga/v1/twin/data/logger.
@@ -193,7 +197,9 @@ class BrokerSender:
         self._away, self._unheard = _Silence(told), _Silence(told)
         self._awaited = f"the source {source!r} of twin {twin[0]!r}"
         self._open: OrderedDict[Number, bytes] = OrderedDict()
-        self._twice: set[Number] = set()
+        # Sent for the first time since all was sent again, and whether that has been fetched.
+        self._later: set[Number] = set()
+        self._fetched = True
         self._lock, self._heard = Lock(), time.monotonic()
         self._refused: str | None = None
         self._client = self._new_client()
@@ -211,6 +217,7 @@ class BrokerSender:
                     self._heard = time.monotonic()
                     self._unheard.heard()
                 self._open[number] = payload
+                self._later.add(number)
         self._client.publish(self._topic, payload, qos=1)
         while len(self._open) >= MOST_OPEN:
             time.sleep(AGAIN / 10)
@@ -251,15 +258,19 @@ class BrokerSender:
             self._client = self._new_client()
             if self._connects():
                 self._unheard.heard()
-                self._twice.clear()
-                self._send_from_the_first()
+                self._send_the_first()
+                self._send_all()
             else:
                 self._away.tell(
                     f"nobody answers at {self._address}; it is tried again until somebody does"
                 )
                 time.sleep(AGAIN / 10)
         if self._open and time.monotonic() - self._heard > UNACKNOWLEDGED:
-            self._send_from_the_first()
+            self._send_the_first()
+            heard = self._heard
+            time.sleep(AGAIN)
+            if self._fetched and self._heard == heard:
+                self._send_all()
 
     def _connects(self) -> bool:
         """Whether the broker takes a connection."""
@@ -279,23 +290,29 @@ class BrokerSender:
             time.sleep(AGAIN / 100)
         return self._client.is_connected()
 
-    def _send_from_the_first(self) -> None:
-        """Send what is not acknowledged, in order: the first until it is, then all others."""
+    def _send_the_first(self) -> None:
+        """Send the first that is not acknowledged until it is, at last more seldom."""
         with self._lock:
             first = next(iter(self._open.items()), None)
+        count = 0
         while first is not None and first[0] in self._open and self._client.is_connected():
             self._client.publish(self._topic, first[1], qos=1)
             self._unheard.tell(
                 f"the broker takes packets, and no service says that they are kept: "
                 f"{self._awaited} is waited for"
             )
-            until = time.monotonic() + AGAIN
+            count += 1
+            until = time.monotonic() + AGAIN * max(1.0, count / OFTEN)
             while first[0] in self._open and time.monotonic() < until:
                 time.sleep(AGAIN / 100)
+
+    def _send_all(self) -> None:
+        """Send what is not acknowledged once more, in order."""
         with self._lock:
-            once = {key: one for key, one in self._open.items() if key not in self._twice}
-            self._twice, self._heard = set(self._open), time.monotonic()
-        for payload in once.values():
+            again = list(self._open.values())
+            self._later.clear()
+            self._fetched, self._heard = not again, time.monotonic()
+        for payload in again:
             self._client.publish(self._topic, payload, qos=1)
 
     def _connected(self, client: Client, _: object, __: object, reason: Any, *___: object) -> None:
@@ -310,6 +327,9 @@ class BrokerSender:
                 here = number.stream == told["stream"] and number.sequence < told["next"]
                 if here and not any(number.sequence in one for one in missing):
                     del self._open[number]
+                    # A broker hands out in order: what was sent before has been fetched.
+                    self._fetched |= number in self._later
+                    self._later.discard(number)
                     self._heard = time.monotonic()
                     self._unheard.heard()
 
