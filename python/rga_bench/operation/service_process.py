@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 import time
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 from urllib.request import urlopen
@@ -53,7 +54,7 @@ class ServiceProcess:
             try:
                 self.get("/healthz")
                 return
-            except OSError:
+            except (OSError, HTTPException):
                 time.sleep(0.05)
         said = (self.folder / "service.log").read_text("utf-8", "replace")
         raise InputError(f"the service ended: {said[-500:]}", str(self.folder), "mend what it says")

@@ -167,6 +167,31 @@ def test_a_service_that_takes_nothing_is_told_of_once(
     assert "503" in told[0]
 
 
+class _Dying(BaseHTTPRequestHandler):
+    """Says at first less than it has promised, as a service that is killed."""
+
+    def do_POST(self) -> None:
+        self.server.calls += 1  # type: ignore[attr-defined]
+        said = json.dumps({"refused": []}).encode()
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(said)))
+        self.end_headers()
+        if self.server.calls > 2:  # type: ignore[attr-defined]
+            self.wfile.write(said)
+
+    def log_message(self, format: str, *args: Any) -> None:
+        pass
+
+
+def test_an_answer_that_is_half_said_is_none(
+    answering: HTTPServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(senders, "AGAIN", 0.01)
+    answering.RequestHandlerClass = _Dying
+    HttpSender(f"http://127.0.0.1:{answering.server_port}/east").send(b"0", None)
+    assert answering.calls == 3  # type: ignore[attr-defined]
+
+
 class _Heard(Exception):
     """Ends a wait that has no end."""
 

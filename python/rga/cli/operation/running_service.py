@@ -4,6 +4,7 @@ import json
 import os
 import time
 from collections.abc import Mapping
+from http.client import HTTPException
 from typing import Any
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlencode, urlsplit
@@ -93,7 +94,7 @@ class ServiceClient:
             said = error.read(SHOWN).decode(errors="replace")
             remedy = f"give a token in {TOKEN}" if error.code in (401, 403) else "mend what it says"
             raise InputError(_detail(said) or str(error), self._place, remedy) from None
-        except (URLError, OSError, ValueError) as error:
+        except (URLError, OSError, HTTPException, ValueError) as error:
             reason = getattr(error, "reason", error)
             raise InputError(
                 f"the service does not answer: {reason}", self._place, "check the address"

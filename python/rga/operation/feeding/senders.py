@@ -5,6 +5,7 @@ import ssl
 import time
 from collections import OrderedDict
 from collections.abc import Callable
+from http.client import HTTPException
 from pathlib import Path
 from threading import Lock
 from typing import Any, Protocol
@@ -117,7 +118,8 @@ class HttpSender:
                     f"the service at {self._place} takes nothing now ({error.code}); "
                     "it is tried again until it does"
                 )
-            except (URLError, OSError) as error:
+            # A service that is killed may leave an answer half said.
+            except (URLError, OSError, HTTPException) as error:
                 reason = getattr(error, "reason", error)
                 self._silence.tell(
                     f"nobody answers at {self._place} ({reason}); it is tried again until "
