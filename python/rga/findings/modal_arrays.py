@@ -1,6 +1,6 @@
 """The arrays behind a diagnosis by modes: what its report draws."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rga.arrays import FloatArray
@@ -48,9 +48,11 @@ class ModalArrays:
         extended: with the causes that were found.
         modes: those that were found in the record.
         time: of the windows [s], float[windows].
+        weather: contexts that may move modes beside what the model says, float[windows] each.
     """
 
     model: Model
     extended: Model
     modes: Sequence[ModeReading]
     time: FloatArray
+    weather: Mapping[str, FloatArray]

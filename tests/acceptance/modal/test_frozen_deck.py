@@ -5,6 +5,7 @@ analyses it holds a truss that no temperature changes.
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -101,7 +102,7 @@ def found(findings: Findings, name: str) -> float:
     ],
 )
 def test_what_freezes_is_named_with_its_kink(
-    seed: int, group: str, below: float, kink: float
+    seed: int, group: str, below: float, kink: float, tmp_path: Path
 ) -> None:
     findings = diagnose_modes(*in_weather(seed, freezing(seed, group, below, kink)))
     (cause,) = findings.causes
@@ -115,6 +116,8 @@ def test_what_freezes_is_named_with_its_kink(
     assert "bearings and soil that freeze" in findings.unexplained.looks_like
     floor = findings.gap.noise_floor
     assert findings.gap.after - floor < 0.5 * (findings.gap.before - floor)
+    findings.write(tmp_path)
+    assert "Natural frequencies over air." in (tmp_path / "report.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -133,6 +136,11 @@ def test_of_frozen_bearings_nothing_is_certain() -> None:
     assert not findings.causes or "bearings and soil" in findings.unexplained.looks_like
 
 
-def test_where_no_temperature_was_measured_none_is_followed() -> None:
+def test_where_no_temperature_was_measured_none_is_followed(tmp_path: Path) -> None:
     model, record = in_weather(0, np.zeros((len(KELVINS), MODES)))
-    assert diagnose_modes(model, replace(record, contexts={})).causes == []
+    findings = diagnose_modes(model, replace(record, contexts={}))
+    assert findings.causes == []
+    findings.write(tmp_path)
+    report = (tmp_path / "report.html").read_text("utf-8")
+    assert "Natural frequencies over time." in report
+    assert "Natural frequencies over air." not in report

@@ -128,7 +128,11 @@ class ToldModes:
         )
         told._account = findings._account
         told._modes = ModalArrays(
-            model, extended_model, mode_readings(likelihood, *ends), likelihood.readings.time
+            model,
+            extended_model,
+            mode_readings(likelihood, *ends),
+            likelihood.readings.time,
+            likelihood.readings.weather,
         )
         return told
 

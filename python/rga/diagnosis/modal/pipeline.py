@@ -151,7 +151,7 @@ def _diagnosed(
         versions=versions(),
     )
     findings._modes = ModalArrays(
-        model, extended, mode_readings(likelihood, nothing, after), readings.time
+        model, extended, mode_readings(likelihood, nothing, after), readings.time, readings.weather
     )
     progress("done", 1.0)
     return findings

@@ -1,4 +1,9 @@
-"""Modes drawn on the structure, computed lines and measured dots, and frequencies over time."""
+"""Modes drawn on the structure, computed lines and measured dots, and their frequencies.
+
+These stand over time, and over what the weather is.
+"""
+
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -104,10 +109,32 @@ def draw_frequencies(account: ModalArrays) -> Markup | None:
     """Frequencies over time: measured, and simulated before and after; None of few windows."""
     if len(account.time) < SOME:
         return None
-    modes = account.modes[:MOST]
-    rows = -(-len(modes) // COLUMNS)
     factor, unit = _time_scale(account.time)
     time = (account.time - account.time[0]) / factor
+    return _frequencies_over(account, time, f"time [{unit}]", "frequencies")
+
+
+def draw_over_weather(account: ModalArrays) -> dict[str, Markup]:
+    """The same over contexts that may move modes and were not the same in all windows, by name."""
+    found = {}
+    for number, (name, column) in enumerate(account.weather.items()):
+        if len(account.time) >= SOME and np.ptp(column) > 0:
+            label = f"{name} [{account.model.context[name].unit}]"
+            figure = f"frequencies-{number}"
+            found[name] = _frequencies_over(account, column, label, figure, dots=True)
+    return found
+
+
+def _frequencies_over(
+    account: ModalArrays, along: FloatArray, label: str, name: str, *, dots: bool = False
+) -> Markup:
+    """Frequencies over what is the same for all modes, float[windows]; simulated as line or dots.
+
+    Over a context there may be several: others move the modes as well, and some causes begin late.
+    """
+    modes = account.modes[:MOST]
+    rows = -(-len(modes) // COLUMNS)
+    simulated: dict[str, Any] = {"ls": "", "marker": ".", "ms": 2.5} if dots else {"lw": 1.2}
     with style():
         tall = 1.9 * rows + 0.6
         figure = Figure(figsize=(10.0, tall))
@@ -117,20 +144,21 @@ def draw_frequencies(account: ModalArrays) -> Markup | None:
         )  # fmt: skip
         for place, mode in enumerate(modes):
             axes = figure.add_subplot(cells[place // COLUMNS, place % COLUMNS])
-            axes.plot(time, _hertz(mode.log_f), ".", color=MEASURED, ms=3)
-            axes.plot(time, _hertz(mode.before), color=BEFORE, lw=1.2)
-            axes.plot(time, _hertz(mode.after), color=AFTER, lw=1.2)
+            axes.plot(along, _hertz(mode.log_f), ".", color=MEASURED, ms=3)
+            axes.plot(along, _hertz(mode.before), color=BEFORE, **simulated)
+            axes.plot(along, _hertz(mode.after), color=AFTER, **simulated)
             axes.set_title(f"{mode.name} [Hz]", fontsize=8.5, loc="left", pad=2)
             grid(axes)
             if place + COLUMNS >= len(modes):
-                axes.set_xlabel(f"time [{unit}]")
+                axes.set_xlabel(label)
         handles = [
             Line2D([], [], color=MEASURED, marker=".", ls="", label="measured"),
-            Line2D([], [], color=BEFORE, label="simulated before"),
-            Line2D([], [], color=AFTER, label="simulated after"),
+            Line2D([], [], color=BEFORE, label="simulated before", **simulated),
+            Line2D([], [], color=AFTER, label="simulated after", **simulated),
         ]
         figure.legend(handles=handles, loc="upper center", ncols=3)
-        return inline(figure, "frequencies", "Natural frequencies over time.")
+        over = label.partition(" [")[0]
+        return inline(figure, name, f"Natural frequencies over {over}.")
 
 
 def _hertz(log_f: FloatArray) -> FloatArray:

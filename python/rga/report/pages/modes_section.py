@@ -7,13 +7,14 @@ import numpy as np
 from rga.findings.modal_arrays import ModalArrays, ModeReading
 from rga.model.mass_budget import mass_budget
 from rga.quantities import DASH, counted, percent
-from rga.report.figures.modes import draw_frequencies, draw_shapes
+from rga.report.figures.modes import draw_frequencies, draw_over_weather, draw_shapes
 
 SHAPES = (
     "Modes on the structure: computed lines, and nodes as they were measured, to the same scale; "
     "left as given, right with the causes."
 )
 FREQUENCIES = "Natural frequencies in the windows, measured and simulated."
+OVER_WEATHER = "The same over {}: what of them follows it, and whether the model does."
 
 
 def modes_section(account: ModalArrays) -> dict[str, Any]:
@@ -22,6 +23,8 @@ def modes_section(account: ModalArrays) -> dict[str, Any]:
     over_time = draw_frequencies(account)
     if over_time is not None:
         figures.append({"svg": over_time, "words": FREQUENCIES})
+    for name, over in draw_over_weather(account).items():
+        figures.append({"svg": over, "words": OVER_WEATHER.format(name)})
     windows = f"{counted(len(account.modes), 'mode')} in {counted(len(account.time), 'window')}"
     lines = [_line(one) for one in account.modes]
     budget = [
