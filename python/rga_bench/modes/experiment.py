@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 from rga_bench.experiment import Execution, Experiment
 from rga_bench.machine import machine, versions
 from rga_bench.measurement import HEADINGS, Measurement
+from rga_bench.modes.diagnosis import diagnosis
 from rga_bench.modes.figures import all_vary, few_vary, grid
 from rga_bench.modes.setting import ModesSetting, shorter
 from rga_bench.page import MarkdownPage
@@ -21,7 +22,8 @@ Times as good: of rates, ours over theirs; of times, theirs over ours. Every sam
 proved to a part in 1e9 and checked by a count (Sylvester's law of inertia): no mode is missed; no
 peer does that. ARPACK is asked for the same part in 1e9. CHOLMOD keeps its analysis, and fills its
 matrix by a product with a constant one; the mode and ordering that are fastest of all are taken. On
-the grid each begins from scratch, and CHOLMOD is handed the matrix."""
+the grid each begins from scratch, and CHOLMOD is handed the matrix. Nobody else names causes from
+modes and gauges together: a diagnosis is held against the time that is asked for."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class ModesExperiment(Experiment[ModesResult]):
         Raises:
             ArithmeticError: two solvers disagree.
         """
-        parts = (all_vary, few_vary, grid)
+        parts = (all_vary, few_vary, grid, diagnosis)
         figures: list[Measurement] = []
         with threadpool_limits(1):
             for number, part in enumerate(parts, start=1):

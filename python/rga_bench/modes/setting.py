@@ -11,6 +11,8 @@ class ModesSetting:
         seconds: that a figure is measured for.
         panels: along a side of the double-layer grid.
         samples: that are gone through in turn, and of which frequencies are compared.
+        windows: in which modes were found that are diagnosed, beside rows of a record.
+        rows: of it.
         seed: of structures and samples.
         judged: whether figures are held against their targets.
     """
@@ -18,10 +20,12 @@ class ModesSetting:
     seconds: float = 2.0
     panels: int = 64
     samples: int = 256
+    windows: int = 500
+    rows: int = 300
     seed: int = 0
     judged: bool = True
 
 
 def shorter(seed: int) -> ModesSetting:
     """What takes some seconds: too short to judge by."""
-    return ModesSetting(0.05, 12, 16, seed, judged=False)
+    return ModesSetting(0.05, 12, 16, 20, 60, seed, judged=False)

@@ -82,6 +82,7 @@ def draw_modal(
     campaign: Campaign,
     beside: bool,
     aims: tuple[float, float] = AIMS,
+    rows: int = _ROWS,
 ) -> ModalCase:
     """A case of a structure with measured modes; the same seed, the same bits.
 
@@ -95,6 +96,7 @@ def draw_modal(
         campaign: how modes were measured.
         beside: a record of the gauges stands beside the modes.
         aims: bounds of the d' of the effect.
+        rows: of the record, where there is one.
 
     Raises:
         ValueError: the structure has nothing that the kind could act on.
@@ -104,9 +106,9 @@ def draw_modal(
         stated = weigh(place, stream(seed, "masses"))
         healthy = None
         if beside:
-            healthy = healthy_case(seed, place, welded, _ROWS, PLAIN)
+            healthy = healthy_case(seed, place, welded, rows, PLAIN)
             world, spread = healthy.world, float(healthy.facts["spread"])
-            last = float(healthy.site.time[_ROWS - 1])
+            last = float(healthy.site.time[rows - 1])
             time = _even(campaign.windows, last / (campaign.windows - 1))
         else:
             spread = float(stream(seed, "spread").uniform(*_SPREADS))
