@@ -240,11 +240,6 @@ class Effect(BaseModel):
         """Sets of parameters of which a diagnosis may propose one at a time, with their priors."""
         return [cls.priors(model, place)]
 
-    @classmethod
-    def forms_on_modes(cls, model: "Model", place: Mapping[str, Any]) -> list[dict[str, Prior]]:
-        """The same of what natural frequencies and mode shapes can show."""
-        return cls.forms(model, place)
-
     def with_values(self, values: Mapping[str, float | Estimated]) -> Self:
         """The same effect with other parameter values, which are taken as they are.
 

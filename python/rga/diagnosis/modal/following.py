@@ -35,8 +35,13 @@ FITTED = 6
 KINKS = (-1.5, -0.75, 0.0, 0.75, 1.5)
 
 
-def following_hypotheses(trials: ModalTrials[ModalReadings]) -> list[Hypothesis]:
-    """Hypotheses of what follows a measured temperature; none where none was."""
+def following_hypotheses(trials: ModalTrials[ModalReadings], kinds: int) -> list[Hypothesis]:
+    """Hypotheses of what follows a measured temperature; none where none was.
+
+    Args:
+        trials: of the model.
+        kinds: that could be wrong of it otherwise.
+    """
     kind, model = StiffnessTemperature, trials.model
     measured = contexts_of_temperature(model) & set(trials.readings.weather)
     if not trials.follows_contexts or not measured:
@@ -44,9 +49,9 @@ def following_hypotheses(trials: ModalTrials[ModalReadings]) -> list[Hypothesis]
     several = [
         (place, priors)
         for place in kind.places(model)
-        for priors in kind.forms_on_modes(model, place)
+        for priors in kind.forms_on_modes()
     ]
-    return [Hypothesis(kind, place, priors, len(several), 1) for place, priors in several]
+    return [Hypothesis(kind, place, priors, len(several), kinds + 1) for place, priors in several]
 
 
 def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress) -> ModalFound:
@@ -61,8 +66,11 @@ def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress)
         progress: called with what is done and the share of it.
     """
     likelihood = found.fit.likelihood
-    candidates = following_hypotheses(likelihood.trials)
-    if len(likelihood.readings.modes) < MODES_A_CAUSE or not candidates:
+    full = len(found.fit.hypotheses) == criteria.naming.most_causes
+    if full or len(likelihood.readings.modes) < MODES_A_CAUSE or not found.first:
+        return found
+    candidates = following_hypotheses(likelihood.trials, found.first[0].hypothesis.kinds)
+    if not candidates:
         return found
     usual = max((_at(found.fit, own) for own in OWN), key=_density)
     if usual.likelihood.weather == OWN[-1]:

@@ -41,8 +41,9 @@ BEYOND = 4
 REACH = 3.0
 #: part of a frequency that a model leaves which is right in all that one can name
 RIGHT = 0.03
-#: modes that are looked at, at most; states, and structures with all their modes, that are kept
-MOST, KEPT, SOLVED = 200, 512, 8
+#: modes that are looked at, at most; numbers in the states that are kept, and structures of which
+#: all modes are
+MOST, KEPT, SOLVED = 200, 2**25, 8
 
 AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
 
@@ -94,6 +95,12 @@ class Prediction:
     doubtful: int
     parts: tuple[FloatArray, ...]
 
+    @property
+    def size(self) -> int:
+        """How many numbers it holds."""
+        several = (self.log_f, self.shapes, self.at_points, self.every, self.recorded, self.mixing)
+        return sum(one.size for one in (*several, *self.parts))
+
 
 class ModalTrials(Generic[AnyWindows]):
     """A model, to which effects are added in turn, under the contexts of measured windows.
@@ -140,9 +147,11 @@ class ModalTrials(Generic[AnyWindows]):
         self._reach = float(max(reach))
         self._count = len(readings.modes) + BEYOND
         self._known: dict[str, Prediction] = {}
+        self._kept = 0
         self._modes_known: dict[str, list[Computed]] = {}
-        self._near: _core.ModalReanalysis | None = None
-        self._near = self._reanalysis()
+        self._near: dict[int, _core.ModalReanalysis] = {}
+        usual = self._structures[self._middle]
+        self._count = max(self._count, len(self._modes(usual)[0]))
 
     @property
     def follows_contexts(self) -> bool:
@@ -239,9 +248,10 @@ class ModalTrials(Generic[AnyWindows]):
         """The modes where effects act all the time, under the contexts that stand for all."""
         key = repr(effects)
         if key not in self._known:
-            self._known[key] = self._simulated(effects)
-            if len(self._known) > KEPT:
-                del self._known[next(iter(self._known))]
+            state = self._known[key] = self._simulated(effects)
+            self._kept += state.size
+            while self._kept > KEPT and len(self._known) > 1:
+                self._kept -= self._known.pop(next(iter(self._known))).size
         return self._known[key]
 
     def _simulated(self, effects: Sequence[Effect]) -> Prediction:
@@ -372,12 +382,8 @@ class ModalTrials(Generic[AnyWindows]):
         """
         count = self._count
         while True:
-            near = self._near if count == self._count else None
             try:
-                if near is None:
-                    found = _core.modes(structure.arrays, structure.masses, count)
-                else:
-                    found = near.modes(structure.arrays, structure.masses, count)
+                found = self._reanalysis(count).modes(structure.arrays, structure.masses, count)
             except (_core.UnstableStructure, _core.InvalidInput) as error:
                 raise refused(structure, error) from None
             last = np.sqrt(found[0][-1]) / (2 * np.pi) if len(found[0]) else np.inf
@@ -385,10 +391,9 @@ class ModalTrials(Generic[AnyWindows]):
                 return found
             count = min(2 * count, MOST)
 
-    def _reanalysis(self) -> _core.ModalReanalysis:
-        structure = self._structures[self._middle]
-        self._count = max(self._count, len(self._modes(structure)[0]))
-        try:
-            return _core.ModalReanalysis(structure.arrays, structure.masses, self._count)
-        except (_core.UnstableStructure, _core.InvalidInput) as error:
-            raise refused(structure, error) from None
+    def _reanalysis(self, count: int) -> _core.ModalReanalysis:
+        """What begins with so many modes of the model as it is given."""
+        if count not in self._near:
+            usual = self._structures[self._middle]
+            self._near[count] = _core.ModalReanalysis(usual.arrays, usual.masses, count)
+        return self._near[count]

@@ -7,6 +7,7 @@
 //! Eigenvalue Problem, 1980, section 6.9).
 
 use faer::{Mat, Side};
+use pulp::{Arch, NullaryFnOnce};
 
 use crate::error::{Error, Result};
 
@@ -46,6 +47,7 @@ pub(crate) trait Pencil {
 /// A space of vectors that K makes orthogonal and long as one, with what K and M make of them.
 pub(crate) struct Lanczos<'a, P: Pencil> {
     pencil: &'a P,
+    arch: Arch,
     vectors: Vec<Vec<f64>>,
     stiff: Vec<Vec<f64>>,
     /// By what part vectors may be off what K^-1 makes of `stiff`.
@@ -76,6 +78,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     pub(crate) fn new(pencil: &'a P) -> Self {
         Self {
             pencil,
+            arch: Arch::new(),
             vectors: Vec::new(),
             stiff: Vec::new(),
             off: Vec::new(),
@@ -182,11 +185,10 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         vector.iter_mut().for_each(|value| *value /= left);
         stiff.iter_mut().for_each(|value| *value /= left);
         let heavy = self.pencil.mass_times(&vector);
-        let mut row: Vec<f64> = self
-            .vectors
-            .iter()
-            .map(|other| dot(other, &heavy))
-            .collect();
+        let mut row = self.arch.dispatch(Products {
+            vectors: &self.vectors,
+            with: &heavy,
+        });
         row.push(dot(&vector, &heavy));
         self.projected.push(row);
         self.vectors.push(vector);
@@ -214,17 +216,16 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
         (left, off / left)
     }
 
-    /// Takes what lies in the vectors from one on off, one after the other; by how much the vector
-    /// and its image are off each other then.
+    /// Takes what lies in the vectors from one on off; by how much the vector and its image are off
+    /// each other then.
     fn take_off(&self, from: usize, vector: &mut [f64], stiff: &mut [f64]) -> f64 {
-        let mut off = 0.0;
-        for (at, other) in self.vectors.iter().enumerate().skip(from) {
-            let share = dot(&self.stiff[at], vector);
-            subtract(vector, share, other);
-            subtract(stiff, share, &self.stiff[at]);
-            off += share.abs() * self.off[at];
-        }
-        off
+        self.arch.dispatch(TakeOff {
+            vectors: &self.vectors[from..],
+            images: &self.stiff[from..],
+            off: &self.off[from..],
+            vector,
+            stiff,
+        })
     }
 
     /// The largest of those whose vectors K^-1 M has been applied to.
@@ -269,6 +270,53 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     }
 }
 
+/// Takes vectors off one, and their images off its image, one after the other.
+///
+/// It runs on the best instructions of the processor; bits do not depend on them.
+struct TakeOff<'a> {
+    vectors: &'a [Vec<f64>],
+    images: &'a [Vec<f64>],
+    off: &'a [f64],
+    vector: &'a mut [f64],
+    stiff: &'a mut [f64],
+}
+
+impl NullaryFnOnce for TakeOff<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut off = 0.0;
+        let others = self.vectors.iter().zip(self.images).zip(self.off);
+        for ((other, image), other_off) in others {
+            let share = dot(image, self.vector);
+            subtract(self.vector, share, other);
+            subtract(self.stiff, share, image);
+            off += share.abs() * other_off;
+        }
+        off
+    }
+}
+
+/// Products of vectors with one, on the best instructions of the processor, with the same bits.
+struct Products<'a> {
+    vectors: &'a [Vec<f64>],
+    with: &'a [f64],
+}
+
+impl NullaryFnOnce for Products<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<f64> {
+        let mut products = Vec::with_capacity(self.vectors.len() + 1);
+        for one in self.vectors {
+            products.push(dot(one, self.with));
+        }
+        products
+    }
+}
+
 /// The same within the space, as shares of its vectors.
 #[derive(Default)]
 struct Within {
@@ -282,6 +330,7 @@ fn norm(vector: &[f64], stiff: &[f64]) -> f64 {
     dot(vector, stiff).max(0.0).sqrt()
 }
 
+#[inline(always)]
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     let (ones, rest) = one.as_chunks::<BESIDE>();
     let (others, further) = other.as_chunks::<BESIDE>();
@@ -299,6 +348,7 @@ pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+#[inline(always)]
 fn subtract(from: &mut [f64], share: f64, other: &[f64]) {
     for (value, part) in from.iter_mut().zip(other) {
         *value -= share * part;

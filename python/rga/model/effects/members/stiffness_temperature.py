@@ -97,8 +97,8 @@ class StiffnessTemperature(Effect):
         return {"rate": USUAL}
 
     @classmethod
-    def forms_on_modes(cls, model: Model, place: Mapping[str, Any]) -> list[dict[str, Prior]]:
-        """Over seasons frequencies show a kink."""
+    def forms_on_modes(cls) -> list[dict[str, Prior]]:
+        """Sets of parameters that frequencies may show: over seasons also a kink."""
         return [{"rate": USUAL}, {"rate": USUAL, "below": FROST, "kink": FREEZING}]
 
     def change_values(
