@@ -253,6 +253,16 @@ class ModalReanalysis:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Modes of a structure near this one, as by `modes`."""
 
+    def modes_below(
+        self,
+        structure: StructureArrays,
+        masses: MassArrays,
+        square: float,
+        least: int,
+        most: int,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Those below a square of the circular frequency, and the next."""
+
 @final
 class Loaded:
     """What load patterns do to the structure of a `Reanalysis`."""

@@ -15,7 +15,9 @@ from rga_bench.modes.swinging import Swinging
 from rga_bench.solver.box_bridge import box_bridge
 from rga_bench.solver.double_layer_grid import double_layer_grid
 
-LITTLE = ModesSetting(seconds=0.0, panels=4, samples=16, windows=16, rows=60, judged=False)
+LITTLE = ModesSetting(
+    seconds=0.0, panels=4, samples=16, windows=16, rows=60, structure="portal", judged=False
+)
 
 
 def peer(name: str, swinging: Swinging) -> Any:

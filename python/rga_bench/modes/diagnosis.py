@@ -16,7 +16,7 @@ from rga_bench.modes.setting import ModesSetting
 from rga_bench.swinging.campaign import Campaign
 from rga_bench.swinging.case import draw_modal
 
-STRUCTURE, KIND = "roof", "member_stiffness"
+KIND = "member_stiffness"
 #: that it should take at most [s]
 ASKED = 15.0
 
@@ -24,7 +24,7 @@ ASKED = 15.0
 def diagnosis(setting: ModesSetting) -> list[Measurement]:
     """Windows of modes beside a record in which a member is soft: time of the processor."""
     case = draw_modal(
-        setting.seed, structure=STRUCTURE, kind=KIND, welded=False,
+        setting.seed, structure=setting.structure, kind=KIND, welded=False,
         campaign=Campaign(windows=setting.windows), beside=True, rows=setting.rows,
     )  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:

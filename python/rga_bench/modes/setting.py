@@ -13,6 +13,7 @@ class ModesSetting:
         samples: that are gone through in turn, and of which frequencies are compared.
         windows: in which modes were found that are diagnosed, beside rows of a record.
         rows: of it.
+        structure: that is diagnosed.
         seed: of structures and samples.
         judged: whether figures are held against their targets.
     """
@@ -22,10 +23,11 @@ class ModesSetting:
     samples: int = 256
     windows: int = 500
     rows: int = 300
+    structure: str = "roof"
     seed: int = 0
     judged: bool = True
 
 
 def shorter(seed: int) -> ModesSetting:
     """What takes some seconds: too short to judge by."""
-    return ModesSetting(0.05, 12, 16, 20, 60, seed, judged=False)
+    return ModesSetting(0.05, 12, 16, 20, 60, "portal", seed, judged=False)

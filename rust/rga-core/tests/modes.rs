@@ -241,6 +241,32 @@ fn modes_near_a_structure_are_those_of_the_other() -> Result<()> {
 }
 
 #[test]
+fn modes_below_an_eigenvalue_come_with_the_next() -> Result<()> {
+    let masses = [(3, mass(800.0)), (5, mass(500.0))];
+    let all = found(&two_bays(0.5), LINE, &masses, 9)?.eigenvalues;
+    let known = with_masses(&two_bays(1.0), LINE, &masses, |structure, masses| {
+        ModalReanalysis::new(structure, masses, 2)
+    })?;
+    let below = |at: f64, least: usize, most: usize| {
+        with_masses(&two_bays(0.5), LINE, &masses, |structure, masses| {
+            known.modes_below(structure, masses, at, (least, most))
+        })
+    };
+    let between = 0.5 * (all[4] + all[5]);
+    for (least, most, count) in [(2, 9, 6), (8, 9, 8), (2, 3, 3)] {
+        let found = below(between, least, most)?.eigenvalues;
+        assert_eq!(found.len(), count);
+        for (one, other) in found.iter().zip(&all) {
+            close(*one, *other);
+        }
+    }
+    for wrong in [0.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(below(wrong, 2, 9), Err(Error::InvalidInput(_))));
+    }
+    Ok(())
+}
+
+#[test]
 fn energies_are_the_slopes_of_eigenvalues() -> Result<()> {
     let (step, masses) = (1e-4_f64, [(3, mass(800.0)), (5, mass(500.0))]);
     let middle = found(&two_bays(1.0), LINE, &masses, 4)?;

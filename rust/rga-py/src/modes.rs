@@ -155,6 +155,39 @@ impl ModalReanalysis {
             .map_err(|error| to_python(py, error))?;
         given(py, &found, model.coordinates.len())
     }
+
+    /// Modes of a structure near this one that lie below a square of the circular frequency, and
+    /// the next one.
+    ///
+    /// Parameters
+    /// ----------
+    /// structure, masses : as for `modes`
+    /// square : above zero [rad2/s2]
+    /// least, most : at least and at most so many modes
+    ///
+    /// Returns
+    /// -------
+    /// as `modes`
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput, UnstableStructure
+    fn modes_below<'py>(
+        &self,
+        py: Python<'py>,
+        structure: &Bound<'py, PyDict>,
+        masses: &Bound<'py, PyDict>,
+        square: f64,
+        least: usize,
+        most: usize,
+    ) -> PyResult<Found<'py>> {
+        read_structure!(model from structure);
+        read_masses!(weights from masses);
+        let found = py
+            .detach(|| (self.0).modes_below(&model, &weights, square, (least, most)))
+            .map_err(|error| to_python(py, error))?;
+        given(py, &found, model.coordinates.len())
+    }
 }
 
 /// Modes of samples of a structure of which stiffnesses vary, few or all; masses stay.

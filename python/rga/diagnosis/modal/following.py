@@ -46,11 +46,7 @@ def following_hypotheses(trials: ModalTrials[ModalReadings], kinds: int) -> list
     measured = contexts_of_temperature(model) & set(trials.readings.weather)
     if not trials.follows_contexts or not measured:
         return []
-    several = [
-        (place, priors)
-        for place in kind.places(model)
-        for priors in kind.forms_on_modes()
-    ]
+    several = [(place, priors) for place in kind.places(model) for priors in kind.forms_on_modes()]
     return [Hypothesis(kind, place, priors, len(several), kinds + 1) for place, priors in several]
 
 

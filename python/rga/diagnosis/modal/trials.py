@@ -35,7 +35,7 @@ from rga.simulation.modal.points import motion_at
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
 
-#: modes computed beyond the expected ones, so that none is missed in its place
+#: modes computed beyond those that are looked for, so that none is missed in its place
 BEYOND = 4
 #: shares of its frequency, in those that a mode may well differ by, within which it is looked for
 REACH = 3.0
@@ -143,15 +143,16 @@ class ModalTrials(Generic[AnyWindows]):
             if not one.at_sensors() and not one.is_load
         }
         self._values = asked | structures.parameters(self._contexts)
-        reach = [look.near * np.exp(REACH * look.within) for look in readings.looks]
-        self._reach = float(max(reach))
-        self._count = len(readings.modes) + BEYOND
+        reach = max(look.near * np.exp(REACH * look.within) for look in readings.looks)
+        self._below = float((2 * np.pi * reach) ** 2)
         self._known: dict[str, Prediction] = {}
         self._kept = 0
         self._modes_known: dict[str, list[Computed]] = {}
-        self._near: dict[int, _core.ModalReanalysis] = {}
         usual = self._structures[self._middle]
-        self._count = max(self._count, len(self._modes(usual)[0]))
+        self._count = len(readings.modes) + BEYOND
+        self._near = self._reanalysis(usual)
+        self._count = max(self._count, len(self._modes(usual)[0]) - 1 + BEYOND)
+        self._near = self._reanalysis(usual)
 
     @property
     def follows_contexts(self) -> bool:
@@ -376,24 +377,16 @@ class ModalTrials(Generic[AnyWindows]):
         return motion_at(shapes[:, self._nodes], self._axes)
 
     def _modes(self, structure: Structure) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Modes up to where the measured ones may be.
+        """Modes up to where the measured ones may be; as many as of the model itself at least."""
+        try:
+            return self._near.modes_below(
+                structure.arrays, structure.masses, self._below, self._count, MOST
+            )
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(structure, error) from None
 
-        Where a trial has more of them, the next begins with as many as ever all the same.
-        """
-        count = self._count
-        while True:
-            try:
-                found = self._reanalysis(count).modes(structure.arrays, structure.masses, count)
-            except (_core.UnstableStructure, _core.InvalidInput) as error:
-                raise refused(structure, error) from None
-            last = np.sqrt(found[0][-1]) / (2 * np.pi) if len(found[0]) else np.inf
-            if len(found[0]) < count or last > self._reach or count >= MOST:
-                return found
-            count = min(2 * count, MOST)
-
-    def _reanalysis(self, count: int) -> _core.ModalReanalysis:
-        """What begins with so many modes of the model as it is given."""
-        if count not in self._near:
-            usual = self._structures[self._middle]
-            self._near[count] = _core.ModalReanalysis(usual.arrays, usual.masses, count)
-        return self._near[count]
+    def _reanalysis(self, usual: Structure) -> _core.ModalReanalysis:
+        try:
+            return _core.ModalReanalysis(usual.arrays, usual.masses, self._count)
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(usual, error) from None

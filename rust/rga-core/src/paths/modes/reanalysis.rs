@@ -9,7 +9,7 @@
 
 use super::motion::Motion;
 use super::{BEYOND, Modes, lowest};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::input::{Masses, Structure};
 use crate::sparse::lanczos::{Lanczos, RitzPairs};
 use crate::validate::masses::check_masses;
@@ -40,14 +40,40 @@ impl ModalReanalysis {
 
     /// The `count` lowest modes of another structure, or all where there are fewer.
     pub fn modes(&self, other: &Structure, masses: &Masses, count: usize) -> Result<Modes> {
+        self.some_modes(other, masses, |_| Ok(count))
+    }
+
+    /// The modes of another structure below an eigenvalue, and the next; at least and at most so
+    /// many, or all where there are fewer.
+    pub fn modes_below(
+        &self,
+        other: &Structure,
+        masses: &Masses,
+        eigenvalue: f64,
+        (least, most): (usize, usize),
+    ) -> Result<Modes> {
+        if !(eigenvalue > 0.0 && eigenvalue.is_finite()) {
+            return Err(Error::invalid("the eigenvalue must be above zero"));
+        }
+        let count = |motion: &Motion| Ok((motion.below(eigenvalue)? + 1).min(most).max(least));
+        self.some_modes(other, masses, count)
+    }
+
+    fn some_modes(
+        &self,
+        other: &Structure,
+        masses: &Masses,
+        count: impl Fn(&Motion) -> Result<usize>,
+    ) -> Result<Modes> {
         check_structure(other)?;
         check_masses(other, masses)?;
         let Some(motion) = self.motion.near(other, masses)? else {
             let motion = Motion::new(other, masses)?;
+            let count = count(&motion)?;
             let found = lowest(&motion, count, BEYOND, Lanczos::new(&motion))?;
             return Ok(motion.modes(&found, count));
         };
-        modes_of_another(&motion, &self.known, count)
+        modes_of_another(&motion, &self.known, count(&motion)?)
     }
 }
 
