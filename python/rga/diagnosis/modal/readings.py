@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
-from rga.diagnosis.modal.recorded import looks_as_recorded, without_dead_points
+from rga.diagnosis.modal.points.recorded import looks_as_recorded, without_dead_points
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.effect import Effect

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.modal.recorded import changes_shapes
+from rga.diagnosis.modal.points.recorded import changes_shapes
 from rga.model.effect import Effect, blend
 from rga.model.parameter import Estimated
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from rga import _core
 from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.modal.point_errors import PointErrors, mixing
+from rga.diagnosis.modal.points.errors import PointErrors, mixing
 from rga.diagnosis.modal.readings import ModalWindows
-from rga.diagnosis.modal.recorded import as_recorded
+from rga.diagnosis.modal.points.recorded import as_recorded
 from rga.diagnosis.modal.stages import of_windows, stages
 from rga.diagnosis.modal.standing import stands_late, without_standing
 from rga.diagnosis.modal.supports import supports, window_contexts
@@ -329,17 +329,16 @@ class ModalTrials(Generic[AnyWindows]):
             )
         number = pairing.computed
         turn = mixture(looks, number, log_f, recorded)
-        at_points = recorded.copy()
-        at_points[number] = turn @ at_points[number]
+        at_points, true = turn @ recorded, turn @ solved.at_points
         own = [at_points[one, look.at] for look, one in zip(looks, number, strict=True)]
         return Prediction(
             log_f[number] + solved.shift,
-            np.tensordot(turn, solved.moving[number], 1),
+            np.tensordot(turn[number], solved.moving, 1),
             number,
             at_points[number],
-            solved.at_points,
-            recorded,
-            mixing(looks, log_f, solved.at_points, number),
+            true,
+            at_points,
+            mixing(looks, log_f, true, number),
             np.array(
                 [
                     mac(look.shape, one) if len(look.at) else np.nan

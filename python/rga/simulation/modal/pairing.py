@@ -262,8 +262,9 @@ def mixture(
     """The rotation of close modes by which they come nearest to what is expected.
 
     Of modes whose frequencies are nearer than what is not modelled couples, none has a shape of its
-    own: a model that is changed a little turns them by any angle. Source: orthogonal Procrustes
-    problem, Schoenemann, Psychometrika 31, 1966.
+    own: a model that is changed a little turns them by any angle. A mode without a pair that is as
+    good as of the same frequency turns with them. Source: orthogonal Procrustes problem,
+    Schoenemann, Psychometrika 31, 1966.
 
     Args:
         expected: modes, each with a pair.
@@ -272,19 +273,23 @@ def mixture(
         shapes: of these for the same modal mass at all points, float[computed, points].
 
     Returns:
-        Orthogonal, float[expected, expected]: by it, shapes of the computed modes, in the order of
-        those expected, become those that are nearest.
+        Orthogonal, float[computed, computed]: by it, shapes of the computed modes become those that
+        are nearest.
     """
-    rotation = np.eye(len(expected))
+    rotation = np.eye(len(log_f))
     order = np.argsort(log_f[computed], kind="stable")
     gaps = np.diff(log_f[computed[order]])
+    alone = np.setdiff1d(np.arange(len(log_f)), computed)
     for close in np.split(order, np.flatnonzero(gaps > COUPLING) + 1):
-        if len(close) == 1:
+        apart = np.abs(log_f[alone][:, None] - log_f[computed[close]])
+        every = np.concatenate([computed[close], alone[(apart < CLOSE).any(axis=1)]])
+        if len(every) == 1:
             continue
-        own = shapes[computed[close]]
+        own = shapes[every]
         alike = np.array([own[:, expected[one].at] @ expected[one].shape for one in close])
         left, _, right = np.linalg.svd(alike)
-        rotation[np.ix_(close, close)] = left @ right
+        right[: len(close)] = left @ right[: len(close)]
+        rotation[np.ix_(every, every)] = right
     return rotation
 
 

@@ -9,7 +9,14 @@ import polars as pl
 from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected, paired, parts_of_others, unlike_mixed
+from rga.simulation.modal.pairing import (
+    COUPLING,
+    Expected,
+    paired,
+    parts_of_others,
+    unlike_mixed,
+)
+from rga.simulation.modal.wrong_points import unlike_but_for_points
 
 #: cost of a pair beyond which an entry is none of the expected modes: four standard deviations in
 #: frequency, say, or a MAC below 0.6
@@ -112,8 +119,27 @@ def named_modes(
         )
         pairing = paired(looks, record.frequency[entries], shapes[entries], MOST_COST, unlike)
         cost += pairing.cost
-        if pairing.others:
+        near = np.log([look.near for look in looks])
+        open_names = [_left_open(pairing.computed, other, near) for other, _ in pairing.others]
+        if None in open_names:
             doubtful.append(window)
+        left = np.setdiff1d(np.arange(len(entries)), pairing.computed)
+        lost = np.flatnonzero(pairing.computed < 0)
+        if len(left) and len(lost):
+            # Of what has no pair a few points may be wrong.
+            own, several = [looks[number] for number in lost], shapes[entries[left]]
+            unlike = np.array(
+                [
+                    [unlike_but_for_points(look, one[look.at], parts[number]) for one in several]
+                    for number, look in zip(lost.tolist(), own, strict=True)
+                ]
+            )
+            found = paired(own, record.frequency[entries[left]], several, MOST_COST, unlike)
+            cost += found.cost - len(lost) * MOST_COST
+            some = found.computed >= 0
+            pairing.computed[lost[some]] = left[found.computed[some]]
+        for modes in open_names:
+            pairing.computed[list(modes or ())] = -1
         for number, chosen in enumerate(pairing.computed):
             if chosen >= 0:
                 mode[entries[chosen]] = number
@@ -130,6 +156,26 @@ def named_modes(
             readings[windows[entry], at] = shapes[entry, point] * _scale(look, shapes[entry])
     times = np.array([record.time[windows == one][0] for one in range(len(readings))])
     return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64), cost)
+
+
+def _left_open(best: IntArray, other: IntArray, near: FloatArray) -> set[int] | None:
+    """Modes of which the names stay open, where two pairings differ by close modes alone.
+
+    Those that trade places are named in the order of their frequencies. Where one of them was found
+    alone, which one it is stays open.
+
+    Returns:
+        Numbers of these modes; None where the pairings differ by more.
+    """
+    changed = np.flatnonzero(best != other)
+    changed = changed[np.argsort(near[changed], kind="stable")]
+    left_open: set[int] = set()
+    for close in np.split(changed, np.flatnonzero(np.diff(near[changed]) > COUPLING) + 1):
+        if set(best[close]) != set(other[close]):
+            return None
+        if (best[close] < 0).any():
+            left_open |= set(close.tolist())
+    return left_open
 
 
 def _parts(looks: Sequence[Expected], points: int) -> list[FloatArray]:

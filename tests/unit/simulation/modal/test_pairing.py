@@ -98,7 +98,18 @@ def test_close_modes_are_turned_to_what_is_expected_by_any_angle() -> None:
         there = shapes[[1, 0, 2]]
         there[:2] = rotation(angle) @ there[:2]
         turn = mixture(modes, np.array([1, 0, 2]), log_f, there)
-        np.testing.assert_allclose(turn @ there[[1, 0, 2]], shapes, atol=1e-12)
+        np.testing.assert_allclose((turn @ there)[[1, 0, 2]], shapes, atol=1e-12)
+
+
+def test_a_mode_of_equal_frequency_turns_with_the_one_that_has_a_pair() -> None:
+    shapes = waves(3)
+    modes, log_f = expected(shapes[[0, 2]], [4.0, 9.0]), np.log([4.0, 4.0, 9.0])
+    for angle in (0.7, -1.4, 3.0):
+        there = shapes.copy()
+        there[:2] = rotation(angle) @ there[:2]
+        turn = mixture(modes, np.array([0, 2]), log_f, there)
+        np.testing.assert_allclose((turn @ there)[[0, 2]], shapes[[0, 2]], atol=1e-12)
+        np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
 
 
 def test_modes_that_lie_apart_are_not_turned() -> None:

@@ -18,8 +18,8 @@ from rga.model.schema import Model
 
 USUAL = Normal(1.0, 0.3)
 #: an accelerometer that is turned, or dead, is no rarer than one that is a little off; a
-#: screening looks at a dead one
-USUAL_AT_POINT = Normal(1.0, 1.0, trials=(-1.0,))
+#: screening looks at a dead one, and at one that reads half as much again
+USUAL_AT_POINT = Normal(1.0, 1.0, trials=(-2.0, -1.0, 0.5))
 
 
 class SensorGain(Effect):

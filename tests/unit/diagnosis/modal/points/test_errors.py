@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from rga.diagnosis.modal.point_errors import FREE, LEAST, TIMES, WRONG, PointErrors, mixing
+from rga.diagnosis.modal.points.errors import FREE, LEAST, TIMES, WRONG, PointErrors, mixing
 from rga.simulation.modal.pairing import Expected
 
 POINTS, COMPUTED = 12, 5
