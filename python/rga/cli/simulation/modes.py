@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rga.records.modal.record import ModalRecord
     from rga.simulation import ModalSimulator
     from rga.simulation.modal.pairing import Pairing
-    from rga.simulation.modal.windows import NamedModes
+    from rga.simulation.modal.windows import NONE, NamedModes
 
 Count = Annotated[
     int,
@@ -67,7 +67,7 @@ def measured_words(measured: "DataFrame", named: "NamedModes", record: "ModalRec
             shown += " " * 14 if line["scatter"] is None else f"   {line['scatter']:11.3f}"
             shown += "  by frequency only" if line["MAC"] is None else f" {line['MAC']:6.3f}"
         lines.append(shown)
-    none = int((named.mode < 0).sum())
+    none = int((named.mode == NONE).sum())
     lines.append(
         f"{counted(len(named.time), 'window')}, {len(record)} modes found in them, {none} of which "
         f"are none of those expected; in {counted(len(named.doubtful), 'window')} another pairing "

@@ -22,8 +22,8 @@ from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import modes_off, squares
 from rga.diagnosis.modal.doubts import (
     apart_in_time,
-    doubtful_windows,
     drifting,
+    of_windows,
     thin,
     warnings_of,
     weather,
@@ -83,7 +83,8 @@ class ToldModes:
             of_structure = any(not modal.hypotheses[number].at_points for number in shown)
             if of_structure and after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
-            words += thin(readings, causes=True) + doubtful_windows(readings)
+            words += thin(readings, causes=True)
+        words += of_windows(readings, likelihood.trials.model)
         alone = [number for number in shown if not self._in_record(number)]
         words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
         return words + drifting(likelihood, self._after)

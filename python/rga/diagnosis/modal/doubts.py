@@ -22,6 +22,8 @@ from rga.records.modal.record import ModalRecord
 
 #: modes without which nothing is said to be right
 FEW_MODES = 3
+#: share of windows in which something else stands for a mode, that is no chance
+UNLIKE = 0.25
 #: standard deviations from which on a drift is no chance
 SURE = 5.0
 #: length of a window beyond which hardly any is meant [s]
@@ -49,6 +51,15 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
     return words
 
 
+def of_windows(readings: ModalReadings, model: Model) -> list[str]:
+    """In words: why what was found in windows may not be what it is taken for."""
+    return [
+        *doubtful_windows(readings),
+        *unlike_modes(readings),
+        *changing_points(readings, model),
+    ]
+
+
 def doubtful_windows(readings: ModalReadings) -> list[str]:
     """In words: that the names of modes are in doubt in many windows."""
     if not readings.doubtful:
@@ -56,6 +67,36 @@ def doubtful_windows(readings: ModalReadings) -> list[str]:
     words = (
         f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
         "found is nearly as probable"
+    )
+    return [words]
+
+
+def unlike_modes(readings: ModalReadings) -> list[str]:
+    """In words: that something else swings where modes are expected."""
+    several = [name for name, share in readings.unlike.items() if share > UNLIKE]
+    if not several:
+        return []
+    words = (
+        f"where {counted(len(several), 'mode')} ({', '.join(several)}) should be, something swings "
+        f"in another shape, in up to {max(readings.unlike.values()):.0%} of the windows: look for "
+        "points that are exchanged, turned or named wrongly, or give the shapes that were measured"
+    )
+    return [words]
+
+
+def changing_points(readings: ModalReadings, model: Model) -> list[str]:
+    """In words: that sensors at points read otherwise from some window on."""
+    points = list(model.points)
+    told = [
+        f"{points[one.point]} from {readings.label(readings.time[one.window])} on "
+        f"({one.times:.2g} times as much)"
+        for one in readings.point_changes
+    ]
+    if not told:
+        return []
+    words = (
+        f"sensors read otherwise within the record: {', '.join(told)}; a cause at a point holds "
+        "for all windows, so look at those before and behind by themselves"
     )
     return [words]
 

@@ -12,8 +12,8 @@ from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
 from rga.diagnosis.modal.doubts import (
-    doubtful_windows,
     drifting,
+    of_windows,
     other_freezing,
     thin,
     warnings_of,
@@ -126,7 +126,7 @@ def _diagnosed(
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
     doubts += other_freezing(likelihood)
-    doubts += doubtful_windows(readings)
+    doubts += of_windows(readings, model)
     effects = [
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
         for number in range(len(found.fit.hypotheses))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.modal.points.changes import PointChange, point_changes
 from rga.diagnosis.modal.points.recorded import looks_as_recorded, without_dead_points
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
@@ -15,7 +16,7 @@ from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.pairing import Expected, mac
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
-from rga.simulation.modal.windows import named_modes
+from rga.simulation.modal.windows import NONE, NamedModes, named_modes
 
 #: scatter of a frequency of which nothing is known: one test repeated gives half to two per cent
 UNKNOWN_SCATTER = 0.01
@@ -70,8 +71,11 @@ class ModalReadings(ModalWindows):
         doubtful: windows of which another pairing is nearly as probable, where they are many.
         unsure: such windows that are left out, where they are few.
         unnamed: entries of the record that are none of the modes.
+        unlike: of expected modes, share of the windows in which they were not found and something
+            else swings about where they are expected.
         uncovered: windows left out, as a context is not known then.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
+        point_changes: points at which a sensor reads otherwise from some window on.
     """
 
     record: ModalRecord
@@ -84,8 +88,10 @@ class ModalReadings(ModalWindows):
     doubtful: int
     unsure: int
     unnamed: int
+    unlike: dict[str, float]
     uncovered: int
     cost: float
+    point_changes: tuple[PointChange, ...]
 
     @classmethod
     def of(
@@ -151,6 +157,9 @@ class ModalReadings(ModalWindows):
             for name, column in record.contexts.items()
         }
         scatter, shown, memory = _noise(log_f, contexts, stated)
+        shapes = np.full((len(record), len(points)), np.nan)
+        shapes[:, at] = record.shapes
+        column_of = np.array([numbers.index(k) if k in numbers else -1 for k in mode])
         return cls(
             record=record,
             modes=tuple(names),
@@ -166,9 +175,11 @@ class ModalReadings(ModalWindows):
             found=np.isfinite(log_f).mean(0),
             doubtful=0 if few else len(named.doubtful),
             unsure=len(np.unique(record.windows[unsure])),
-            unnamed=int((named.mode < 0).sum()),
+            unnamed=int((named.mode == NONE).sum()),
+            unlike=_unlike_modes(named, record, expected),
             uncovered=uncovered,
             cost=named.cost,
+            point_changes=tuple(point_changes(shapes, windows, column_of, looks)),
         )
 
     @property
@@ -206,6 +217,19 @@ def _covered(record: ModalRecord, needed: set[str], model: Model) -> ModalRecord
                 f"give a column {name} beside the frequencies, or a record of the same days",
             )
     return record.entries(known)
+
+
+def _unlike_modes(
+    named: NamedModes, record: ModalRecord, expected: Mapping[str, Expected]
+) -> dict[str, float]:
+    """Shares of the windows in which modes with shapes were not found, and something is there."""
+    windows, shares = record.windows, {}
+    for number, (name, look) in enumerate(expected.items()):
+        there = np.abs(np.log(record.frequency / look.near)) < look.within
+        other = np.setdiff1d(windows[there & (named.mode == NONE)], windows[named.mode == number])
+        if len(look.at):
+            shares[name] = len(other) / len(named.time)
+    return shares
 
 
 def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, IntArray, float]:

@@ -10,8 +10,8 @@ import numpy as np
 from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.modal.points.errors import PointErrors, mixing
-from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.points.recorded import as_recorded
+from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.stages import of_windows, stages
 from rga.diagnosis.modal.standing import stands_late, without_standing
 from rga.diagnosis.modal.supports import supports, window_contexts

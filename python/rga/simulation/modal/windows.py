@@ -21,6 +21,8 @@ from rga.simulation.modal.wrong_points import unlike_but_for_points
 #: cost of a pair beyond which an entry is none of the expected modes: four standard deviations in
 #: frequency, say, or a MAC below 0.6
 MOST_COST = 8.0
+#: number of an entry that is none of the expected modes, and of one that may be either of two
+NONE, OPEN = -1, -2
 #: median size of the difference of two normal variables, in their standard deviation
 MEDIAN_STEP = 0.6744897501960817 * np.sqrt(2)
 
@@ -31,7 +33,8 @@ class NamedModes:
 
     Attributes:
         time: of the windows [s], float[windows].
-        mode: number of the expected mode of each entry, int[entries]; -1: it is none of them.
+        mode: number of the expected mode of each entry, int[entries]; `NONE` of them, or `OPEN`
+            which of close ones it is.
         readings: of the modal sensors of the model, float[windows, sensors]; NaN where a mode was
             not found.
         mac: of the entries with their modes, float[entries]; NaN without shape.
@@ -99,7 +102,7 @@ def named_modes(
     known = {name: number for number, name in enumerate(model.points)}
     shapes = np.full((len(record), len(model.points)), np.nan)
     shapes[:, [known[name] for name in record.points]] = record.shapes
-    mode = np.full(len(record), -1, dtype=np.int64)
+    mode = np.full(len(record), NONE, dtype=np.int64)
     alike = np.full(len(record), np.nan)
     windows = record.windows
     doubtful, cost = [], 0.0
@@ -138,11 +141,10 @@ def named_modes(
             cost += found.cost - len(lost) * MOST_COST
             some = found.computed >= 0
             pairing.computed[lost[some]] = left[found.computed[some]]
-        for modes in open_names:
-            pairing.computed[list(modes or ())] = -1
+        either = set().union(*(modes or () for modes in open_names))
         for number, chosen in enumerate(pairing.computed):
             if chosen >= 0:
-                mode[entries[chosen]] = number
+                mode[entries[chosen]] = OPEN if number in either else number
                 alike[entries[chosen]] = pairing.mac[number, chosen]
     readings = np.full((windows.max(initial=-1) + 1, len(model.modal_sensors)), np.nan)
     for at, sensor in enumerate(model.modal_sensors.values()):

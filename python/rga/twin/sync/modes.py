@@ -13,7 +13,7 @@ from rga.quantities import counted
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
-from rga.simulation.modal.windows import named_modes
+from rga.simulation.modal.windows import NONE, named_modes
 from rga.twin.sync.context_courses import ContextCourses, outside, without_courses
 from rga.twin.sync.protocol import OutOfSync, listed
 
@@ -118,7 +118,9 @@ def watch_modes(
     alarm = None if raised is None else _out_of_sync(raised, left[baseline:], modes, time)
     unwatched = {modes[one]: why for one, why in monitor.unwatched.items()}
     told = [f"mode {name} is not watched: {why}" for name, why in unwatched.items()]
-    told += _left_out(len(named.doubtful), outside(columns), int((named.mode < 0).sum()), courses)
+    told += _left_out(
+        len(named.doubtful), outside(columns), int((named.mode == NONE).sum()), courses
+    )
     return WatchedModes(modes, time, left, baseline, alarm, unwatched, (*told, *monitor.warnings))
 
 
