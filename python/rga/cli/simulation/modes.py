@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rga.records.modal.record import ModalRecord
     from rga.simulation import ModalSimulator
     from rga.simulation.modal.pairing import Pairing
-    from rga.simulation.modal.windows import NONE, NamedModes
+    from rga.simulation.modal.windows import NamedModes
 
 Count = Annotated[
     int,
@@ -58,6 +58,7 @@ def pairing_words(
 def measured_words(measured: "DataFrame", named: "NamedModes", record: "ModalRecord") -> str:
     """Which modes of a record are which, and how often each was found."""
     from rga.quantities import counted
+    from rga.simulation.modal.windows import NONE
 
     lines = ["measured   near [Hz]   found [%]     f [Hz]   scatter [%]    MAC"]
     for line in measured.iter_rows(named=True):
