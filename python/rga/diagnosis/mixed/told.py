@@ -33,7 +33,7 @@ from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.noise.covariance import Reduced
-from rga.diagnosis.search.laplace import extended
+from rga.diagnosis.search.laplace import effects_at, extended
 from rga.findings import Findings
 from rga.findings.modal_arrays import ModalArrays
 from rga.findings.phrases import effect_words, explanation_words, place_words
@@ -84,7 +84,7 @@ class ToldModes:
             if of_structure and after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
             words += thin(readings, causes=True)
-        words += of_windows(readings, likelihood.trials.model)
+        words += of_windows(likelihood, effects_at(modal.hypotheses, modal.z))
         alone = [number for number in shown if not self._in_record(number)]
         words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
         return words + drifting(likelihood, self._after)

@@ -14,6 +14,7 @@ from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials, Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
+from rga.model.parameter import Factor, Prior
 
 #: places of a kind at one member or node that are simulated: by what they would explain, and by
 #: how much they move
@@ -23,6 +24,8 @@ BEGINNINGS, EITHER = 30, 5
 #: prospects that are simulated at the size that they promise, rounds of that, and the farthest
 #: that they may promise [prior sd]
 FARTHER, ROUNDS, FARTHEST = 40, 4, 6.0
+#: factor at which hardly anything is left
+LOST = 0.03
 #: modes of which the shape must have been measured at a point; kinds at points are fitted at so
 #: many, and so many exchanges are simulated
 SHAPES, AT_POINTS, EXCHANGES = 2, 5, 8
@@ -96,7 +99,7 @@ def prospects(
             continue
         best: ModalProspect | None = None
         largest = 0.0
-        for trial in product(*(prior.trials for prior in candidate.priors.values())):
+        for trial in product(*map(_trials, candidate.priors.values())):
             there = predicted(likelihood, [*found, candidate], np.array([*z, *trial]))
             if there is None:
                 continue
@@ -127,6 +130,15 @@ def prospects(
     nearest = [_farther(likelihood, one, (found, z), left) for one in several[:FARTHER]]
     progress(1.0)
     return sorted([*nearest, *several[FARTHER:]], key=lambda one: -one.score)
+
+
+def _trials(prior: Prior) -> tuple[float, ...]:
+    """Where a parameter is tried: of what may be lost altogether, there too.
+
+    What is lost changes modes by far more than slopes at usual sizes promise.
+    """
+    may_be_lost = isinstance(prior, Factor) and prior.tail > 0.0
+    return (*prior.trials, prior.z(LOST)) if may_be_lost else prior.trials
 
 
 def _farther(

@@ -1,11 +1,12 @@
 """In words: why measured modes decide less than they seem to."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.points.changes import point_changes
 from rga.diagnosis.modal.readings import (
     MOST_MEMORY,
     REPEATS,
@@ -17,6 +18,7 @@ from rga.diagnosis.modal.readings import (
 from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.model import Model
+from rga.model.effect import Effect
 from rga.quantities import counted, duration, short
 from rga.records.modal.record import ModalRecord
 
@@ -51,12 +53,18 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
     return words
 
 
-def of_windows(readings: ModalReadings, model: Model) -> list[str]:
-    """In words: why what was found in windows may not be what it is taken for."""
+def of_windows(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -> list[str]:
+    """In words: why what was found in windows may not be what it is taken for.
+
+    Args:
+        likelihood: of the modes.
+        causes: of them.
+    """
+    readings = likelihood.readings
     return [
         *doubtful_windows(readings),
         *unlike_modes(readings),
-        *changing_points(readings, model),
+        *changing_points(likelihood, causes),
     ]
 
 
@@ -84,13 +92,20 @@ def unlike_modes(readings: ModalReadings) -> list[str]:
     return [words]
 
 
-def changing_points(readings: ModalReadings, model: Model) -> list[str]:
+def changing_points(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -> list[str]:
     """In words: that sensors at points read otherwise from some window on."""
-    points = list(model.points)
+    readings, trials = likelihood.readings, likelihood.trials
+    points = list(trials.model.points)
+    found = point_changes(
+        readings.shapes_at(points),
+        readings.record.windows,
+        readings.entries,
+        trials.at_points_by_window(causes),
+    )
     told = [
         f"{points[one.point]} from {readings.label(readings.time[one.window])} on "
-        f"({one.times:.2g} times as much)"
-        for one in readings.point_changes
+        f"({round(one.times, 2) + 0.0:g} times as much)"
+        for one in found
     ]
     if not told:
         return []

@@ -50,6 +50,8 @@ from rga.records.modal.record import ModalRecord
 Progress = Callable[[str, float], None]
 #: decimals of log-odds
 DECIMALS = 2
+#: of what may stand for a cause, by how many the modes are read anew
+READ_ANEW = 5
 
 
 def diagnose_modes(
@@ -108,9 +110,7 @@ def _diagnosed(
     found = _searched(model, readings, criteria, progress)
     if found.fit.hypotheses and readings.names_in_doubt:
         # A structure that has changed may have modes that are hardly those expected.
-        causes = effects_at(found.fit.hypotheses, found.fit.z)
-        looks = found.fit.likelihood.trials.looks(causes)
-        again = ModalReadings.of(model, record, looks, list(causes.values()))
+        again = min(_read_anew(model, record, found, criteria), key=lambda one: one.cost)
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)
@@ -126,7 +126,7 @@ def _diagnosed(
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
     doubts += other_freezing(likelihood)
-    doubts += of_windows(readings, model)
+    doubts += of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z))
     effects = [
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
         for number in range(len(found.fit.hypotheses))
@@ -155,6 +155,24 @@ def _diagnosed(
     )
     progress("done", 1.0)
     return findings
+
+
+def _read_anew(
+    model: Model, record: ModalRecord, found: ModalFound, criteria: Criteria
+) -> list[ModalReadings]:
+    """The modes out of a record where what was found, or what may stand for it, acts."""
+    near = [
+        one
+        for ranked in found.rivals
+        for one, behind in ranked[:READ_ANEW]
+        if behind < criteria.rivals.log_odds
+    ]
+    several = []
+    for fit in (found.fit, *near):
+        causes = effects_at(fit.hypotheses, fit.z)
+        looks = fit.likelihood.trials.looks(causes)
+        several.append(ModalReadings.of(model, record, looks, list(causes.values())))
+    return several
 
 
 def _searched(

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
-from rga.diagnosis.modal.points.changes import PointChange, point_changes
 from rga.diagnosis.modal.points.recorded import looks_as_recorded, without_dead_points
 from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
@@ -75,7 +74,7 @@ class ModalReadings(ModalWindows):
             else swings about where they are expected.
         uncovered: windows left out, as a context is not known then.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
-        point_changes: points at which a sensor reads otherwise from some window on.
+        entries: number of the mode of each entry of the record, int[entries]; negative: none.
     """
 
     record: ModalRecord
@@ -91,7 +90,7 @@ class ModalReadings(ModalWindows):
     unlike: dict[str, float]
     uncovered: int
     cost: float
-    point_changes: tuple[PointChange, ...]
+    entries: IntArray
 
     @classmethod
     def of(
@@ -157,9 +156,7 @@ class ModalReadings(ModalWindows):
             for name, column in record.contexts.items()
         }
         scatter, shown, memory = _noise(log_f, contexts, stated)
-        shapes = np.full((len(record), len(points)), np.nan)
-        shapes[:, at] = record.shapes
-        column_of = np.array([numbers.index(k) if k in numbers else -1 for k in mode])
+        columns = {number: column for column, number in enumerate(numbers)}
         return cls(
             record=record,
             modes=tuple(names),
@@ -179,8 +176,14 @@ class ModalReadings(ModalWindows):
             unlike=_unlike_modes(named, record, expected),
             uncovered=uncovered,
             cost=named.cost,
-            point_changes=tuple(point_changes(shapes, windows, column_of, looks)),
+            entries=np.array([columns.get(int(number), -1) for number in mode]),
         )
+
+    def shapes_at(self, points: Sequence[str]) -> FloatArray:
+        """Shapes of all entries at points, float[entries, points]; NaN where not measured."""
+        own = np.full((len(self.record), len(points)), np.nan)
+        own[:, [list(points).index(name) for name in self.record.points]] = self.record.shapes
+        return own
 
     @property
     def names_in_doubt(self) -> bool:

@@ -230,6 +230,14 @@ class ModalTrials(Generic[AnyWindows]):
                 }
         return found
 
+    def at_points_by_window(self, effects: Mapping[str, Effect]) -> FloatArray:
+        """Shapes as sensors at the points record them, float[windows, modes, points]."""
+        readings = self.readings
+        found = np.empty((len(readings.time), len(readings.modes), len(self.model.points)))
+        for own, acting in stages({**self._own, **effects}, readings.time):
+            found[own] = self._state(acting).at_points
+        return found
+
     def energies(self) -> tuple[FloatArray, FloatArray]:
         """Shares of members in the modes: derivatives of ln f by logarithms of what they are.
 

@@ -1,16 +1,13 @@
 """Points whose sensor reads otherwise from some window on: came loose, was turned, died.
 
-A cause at a point holds for all windows, since means of shapes know no time. What a structure does
-to shapes it does to many points, and by little at each.
+A cause at a point holds for all windows, since means of shapes know no time.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
-from rga.simulation.modal.pairing import Expected
 from rga.simulation.modal.windows import MEDIAN_STEP
 
 #: windows on either side of a change, and standard deviations from which on it is no chance
@@ -38,24 +35,23 @@ class PointChange:
 
 
 def point_changes(
-    shapes: FloatArray, windows: IntArray, modes: IntArray, looks: Sequence[Expected]
+    shapes: FloatArray, windows: IntArray, modes: IntArray, predicted: FloatArray
 ) -> list[PointChange]:
     """Points that read otherwise from some window on, each with the likeliest of these.
 
     Args:
         shapes: of entries at all points, float[entries, points]; NaN where one did not measure.
         windows: of the entries, from 0 on, int[entries].
-        modes: of the entries, int[entries]; -1: of none.
-        looks: mean shapes of the modes.
+        modes: of the entries, int[entries]; negative: of none.
+        predicted: the shapes of the modes, float[windows, modes, points].
 
-    >>> look = Expected(1.0, 0.1, np.arange(4), np.full(4, 0.5))
     >>> shapes = np.random.default_rng(0).normal(1.0, 0.01, (20, 4))
     >>> shapes[10:, 2] *= 0.5
-    >>> found = point_changes(shapes, np.arange(20), np.zeros(20, dtype=int), [look])
+    >>> found = point_changes(shapes, np.arange(20), np.zeros(20, dtype=int), np.ones((20, 1, 4)))
     >>> [(one.point, one.window, round(one.times, 1)) for one in found]
     [(2, 10, 0.5)]
     """
-    read = _read(shapes, windows, modes, looks)
+    read = _read(shapes, windows, modes, predicted)
     found: list[PointChange] = []
     sizes = []
     for point, course in enumerate(read.T):
@@ -79,23 +75,21 @@ def point_changes(
 
 
 def _read(
-    shapes: FloatArray, windows: IntArray, modes: IntArray, looks: Sequence[Expected]
+    shapes: FloatArray, windows: IntArray, modes: IntArray, predicted: FloatArray
 ) -> FloatArray:
-    """What each point reads of what it does on average, all modes together, float[windows, points].
+    """What each point reads of what is predicted, all modes together, float[windows, points].
 
     NaN where no mode of a window moves it.
     """
-    count = int(windows.max(initial=-1)) + 1
-    along, squares = np.zeros((2, count, shapes.shape[1]))
-    for mode, look in enumerate(looks):
-        for entry in np.flatnonzero(modes == mode):
-            own = shapes[entry, look.at]
-            seen = np.isfinite(own)
-            length = float(own[seen] @ own[seen])
-            if not length:
-                continue
-            scaled = own[seen] * float(own[seen] @ look.shape[seen]) / length
-            at = look.at[seen]
-            along[windows[entry], at] += scaled * look.shape[seen]
-            squares[windows[entry], at] += look.shape[seen] ** 2
+    along, squares = np.zeros((2, len(predicted), shapes.shape[1]))
+    for entry in np.flatnonzero(modes >= 0):
+        window = windows[entry]
+        own, shape = shapes[entry], predicted[window, modes[entry]]
+        seen = np.flatnonzero(np.isfinite(own))
+        own, shape = own[seen], shape[seen]
+        lengths = float(np.linalg.norm(own)), float(np.linalg.norm(shape))
+        if min(lengths) > 0.0:
+            own, shape = own / lengths[0], shape / lengths[1]
+            along[window, seen] += own * float(own @ shape) * shape
+            squares[window, seen] += shape**2
     return np.where(squares > MOVING, along / np.maximum(squares, 1e-300), np.nan)
