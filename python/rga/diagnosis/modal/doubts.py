@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.likelihood import WEATHER, ModalLikelihood, bent_lines
 from rga.diagnosis.modal.points.changes import point_changes
 from rga.diagnosis.modal.readings import (
     MOST_MEMORY,
@@ -30,6 +30,8 @@ UNLIKE = 0.25
 SURE = 5.0
 #: length of a window beyond which hardly any is meant [s]
 LONG_WINDOW = 86_400.0
+#: windows by which a structure may be behind its weather
+LAGS = 12
 #: change of a frequency that no weather makes
 BEYOND_WEATHER = 0.1
 
@@ -160,6 +162,64 @@ def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Predic
         "beside the frequencies: it may be the weather"
     )
     return [words]
+
+
+def lagging(
+    likelihood: ModalLikelihood, causes: Sequence[Hypothesis], after: Prediction
+) -> list[str]:
+    """In words: that weather of some windows before explains as much as what begins late."""
+    readings = likelihood.readings
+    varying = any(True for _ in scaled_contexts(readings.weather))
+    if not varying or all(one.onset is None for one in causes):
+        return []
+    explained = _left_by_weather(likelihood, after, 0)
+    nothing = likelihood.trials.predict({})
+    for lag in range(1, LAGS + 1):
+        if _left_by_weather(likelihood, nothing, lag) <= explained:
+            words = (
+                f"{', '.join(readings.weather)} of {counted(lag, 'window')} before explains as "
+                "much as what begins late: a temperature inside the structure, which lags behind "
+                "the air, may be all of it; give that one"
+            )
+            return [words]
+    return []
+
+
+def _left_by_weather(likelihood: ModalLikelihood, prediction: Prediction, lag: int) -> float:
+    """What the weather of so many windows before leaves of frequencies, squares by the noise."""
+    readings = likelihood.readings
+    windows = len(readings.time)
+    courses = bent_lines(readings.weather, windows).T
+    columns = np.column_stack([np.ones(windows - LAGS), courses[LAGS - lag : windows - lag]])
+    off, total = likelihood.frequencies_off(prediction)[LAGS:], 0.0
+    for mode, scatter in enumerate(readings.scatter):
+        seen = np.isfinite(readings.log_f[LAGS:, mode])
+        left = off[seen, mode] - columns[seen] @ (np.linalg.pinv(columns[seen]) @ off[seen, mode])
+        total += float(left @ left) / scatter**2
+    return total
+
+
+def following_contexts(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
+    """In words: that frequencies follow contexts by more than is usual."""
+    readings = likelihood.readings
+    words = []
+    for name, column in readings.weather.items():
+        courses = bent_lines({name: column}, len(readings.time)).T
+        columns = np.column_stack([np.ones(len(courses)), courses])
+        sizes = {}
+        for mode, off in zip(readings.modes, (readings.log_f - after.log_f).T, strict=True):
+            seen = np.isfinite(off)
+            if seen.sum() >= 2 * columns.shape[1]:
+                amounts = np.linalg.pinv(columns[seen]) @ off[seen]
+                sizes[mode] = float(np.ptp(columns[seen] @ amounts))
+        most = max(sizes, key=lambda mode: sizes[mode], default="")
+        if sizes and sizes[most] > WEATHER:
+            words.append(
+                f"frequencies follow {name} by up to {sizes[most]:.1%} over its range ({most}): "
+                "that is taken for the weather and for no cause; a group that follows it is named "
+                "where the model has a temperature"
+            )
+    return words
 
 
 def other_freezing(likelihood: ModalLikelihood) -> list[str]:

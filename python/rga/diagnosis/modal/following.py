@@ -12,7 +12,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, fitted
-from rga.diagnosis.modal.likelihood import WEATHER, bent_lines
+from rga.diagnosis.modal.likelihood import PLACES, WEATHER, bent_lines
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.search import MODES_A_CAUSE, ModalFound, Progress
 from rga.diagnosis.modal.trials import ModalTrials
@@ -23,6 +23,7 @@ from rga.model.effects.members.stiffness_temperature import (
     contexts_of_temperature,
     driven_temperatures,
 )
+from rga.model.parameter import listed
 
 #: shares of a frequency that the weather may do to each mode of its own
 OWN = tuple(4.0 * WEATHER / 2.0**k for k in range(7))
@@ -35,26 +36,36 @@ FITTED = 6
 KINKS = (-1.5, -0.75, 0.0, 0.75, 1.5)
 
 
-def following_hypotheses(trials: ModalTrials[ModalReadings], kinds: int) -> list[Hypothesis]:
+def following_hypotheses(
+    trials: ModalTrials[ModalReadings], kinds: int
+) -> tuple[list[Hypothesis], list[Hypothesis]]:
     """Hypotheses of what follows a measured temperature; none where none was.
 
     Args:
         trials: of the model.
         kinds: that could be wrong of it otherwise.
+
+    Returns:
+        That parts of the structure do, and that all of it does.
     """
     kind, model = StiffnessTemperature, trials.model
     measured = contexts_of_temperature(model) & set(trials.readings.weather)
     if not trials.follows_contexts or not measured:
-        return []
-    several = [(place, priors) for place in kind.places(model) for priors in kind.forms_on_modes()]
-    return [Hypothesis(kind, place, priors, len(several), kinds + 1) for place, priors in several]
+        return [], []
+    places, forms = list(kind.places(model)), kind.forms_on_modes()
+    count = len(places) * len(forms)
+    parts, whole = (
+        [Hypothesis(kind, place, form, count, kinds + 1) for place in some for form in forms]
+        for some in (places, [{"group": list(model.groups)}])
+    )
+    return parts, whole
 
 
 def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress) -> ModalFound:
     """Causes with one that follows the temperature, where there is one.
 
-    It must be worth its evidence, what is left of the weather in each mode unknown, and leave
-    little of it.
+    It must be worth its evidence, what is left of the weather in each mode unknown, leave little of
+    it, and explain it better than that all of the structure follows alike.
 
     Args:
         found: causes that act whatever the weather.
@@ -65,14 +76,14 @@ def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress)
     full = len(found.fit.hypotheses) == criteria.naming.most_causes
     if full or len(likelihood.readings.modes) < MODES_A_CAUSE or not found.first:
         return found
-    candidates = following_hypotheses(likelihood.trials, found.first[0].hypothesis.kinds)
-    if not candidates:
+    parts, whole = following_hypotheses(likelihood.trials, found.first[0].hypothesis.kinds)
+    if not parts:
         return found
     usual = max((_at(found.fit, own) for own in OWN), key=_density)
     if usual.likelihood.weather == OWN[-1]:
         return found
     fits = []
-    for number, (hypothesis, z) in enumerate(_promising(usual, candidates)):
+    for number, (hypothesis, z) in enumerate(_promising(usual, parts)):
         progress("looking for what follows the temperature", number / FITTED)
         fits.append(_fitted_beside(usual, hypothesis, z))
     progress("looking for what follows the temperature", 1.0)
@@ -82,6 +93,10 @@ def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress)
     little = best.likelihood.explains_weather
     little &= _weather_left(best) < LEFT * _weather_left(usual)
     if gain < criteria.naming.log_odds or not little:
+        return found
+    # Modes that follow alike, or bend at the same place, each by its own share, show no part yet.
+    alike = [_density(_fitted_beside(usual, *one)) for one in _promising(usual, whole)]
+    if _density(best) - max(*alike, _bending(usual)) < criteria.naming.log_odds:
         return found
 
     def beside(one: ModalFit) -> ModalFit:
@@ -113,6 +128,18 @@ def _at(fit: ModalFit, own: float) -> ModalFit:
 def _density(fit: ModalFit) -> float:
     """Log evidence that compares whatever the weather may do to each mode of its own."""
     return fit.log_evidence + fit.likelihood.of_nothing
+
+
+def _bending(usual: ModalFit) -> float:
+    """Log evidence of causes where all modes bend at one place as they follow the weather."""
+    several = [
+        _density(
+            fitted(usual.likelihood.with_weather(own).bending(bend), usual.hypotheses, usual.z)
+        )
+        for own in OWN
+        for bend in PLACES.tolist()
+    ]
+    return max(several) - float(np.log(len(PLACES)))
 
 
 def _weather_left(fit: ModalFit) -> float:
@@ -158,7 +185,8 @@ def _promising(
     left = likelihood.residual(usual.prediction or trials.predict({}))
     scored = []
     for one in candidates:
-        own = strain[:, [members[name] for name in groups[one.place["group"]]]].sum(axis=1)
+        chosen = {name for group in listed(one.place["group"]) for name in groups[group]}
+        own = strain[:, [members[name] for name in sorted(chosen)]].sum(axis=1)
         for kink in KINKS if "kink" in one.priors else (None,):
             courses = _courses(one, temperature, delta.minus, kink)
             columns = np.concatenate(

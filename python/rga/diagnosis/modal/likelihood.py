@@ -21,8 +21,8 @@ CHANGE_ERROR = 0.1
 #: what a context may do to a mode beside what the model says, over its range, as a share of the
 #: frequency: a deck of asphalt stiffens by more when it freezes, steel by less
 WEATHER = 0.03
-#: bends that its line may have, anywhere over the range
-BENDS = 9
+#: where its line may bend, as shares of the range
+PLACES = np.arange(1, 10) / 10
 #: error that a model makes of a frequency when it is right in everything that one can name, as a
 #: share of it: Georgia Tech's footbridge and others leave 1 to 2 %
 MODEL_ERROR = 0.01
@@ -78,8 +78,15 @@ def _whitened(columns: FloatArray, weight: FloatArray, memory: FloatArray) -> Fl
     return np.asarray(white)
 
 
-def bent_lines(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
-    """Lines that bend anywhere over the range of each context, float[k, windows].
+def bent_lines(
+    contexts: dict[str, FloatArray], windows: int, bend: float | None = None
+) -> FloatArray:
+    """Lines that bend over the range of each context, float[k, windows].
+
+    Args:
+        contexts: float[windows] each.
+        windows: how many there are.
+        bend: where, as a share of the range; None: anywhere.
 
     A line and bends, each of which is about as likely to be the one: where asphalt stiffens or a
     bearing freezes stands in no model, and a bend in another place leaves a course that a change
@@ -88,10 +95,10 @@ def bent_lines(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
     >>> bent_lines({"air": np.array([0.0, 10.0])}, 2)[0]
     array([-0.5,  0.5])
     """
-    bends = np.arange(1, BENDS + 1)[:, None] / (BENDS + 1)
+    bends = PLACES[:, None] if bend is None else np.array([[bend]])
     courses = []
     for course in scaled_contexts(contexts):
-        bent = np.abs(course - bends) / np.sqrt(BENDS)
+        bent = np.abs(course - bends) / np.sqrt(len(bends))
         courses += [course - course.mean(), *(bent - bent.mean(axis=1, keepdims=True))]
     return np.array(courses).reshape(len(courses), windows)
 
@@ -121,6 +128,8 @@ class ModalLikelihood:
         hidden: modes that are not looked at, bool[modes].
         weather: what a context may do to a mode beside what the model says, over its range, as a
             share of the frequency.
+        bend: where all modes bend as they follow a context, as a share of its range; None: each
+            mode anywhere.
     """
 
     def __init__(
@@ -129,14 +138,15 @@ class ModalLikelihood:
         level: float = MODEL_ERROR,
         hidden: BoolArray | None = None,
         weather: float = WEATHER,
+        bend: float | None = None,
     ) -> None:
-        self.trials, self.level, self.weather = trials, level, weather
+        self.trials, self.level, self.weather, self.bend = trials, level, weather, bend
         self.readings: ModalReadings = trials.readings
         count = len(self.readings.modes)
         self.hidden = np.zeros(count, dtype=bool) if hidden is None else hidden
         # The error of the model is the same in all windows; what a context does beside is not.
         windows = len(self.readings.time)
-        bent = weather * bent_lines(self.readings.weather, windows)
+        bent = weather * bent_lines(self.readings.weather, windows, bend)
         columns = np.concatenate([level * np.ones((1, windows)), bent])
         self._standing = standing_errors(trials.by_standing)
         self._nothing = trials.predict({})
@@ -154,15 +164,19 @@ class ModalLikelihood:
         """The same without one of the modes."""
         hidden = self.hidden.copy()
         hidden[mode] = True
-        return ModalLikelihood(self.trials, self.level, hidden, self.weather)
+        return ModalLikelihood(self.trials, self.level, hidden, self.weather, self.bend)
 
     def with_level(self, level: float) -> "ModalLikelihood":
         """The same with another error of the model."""
-        return ModalLikelihood(self.trials, level, self.hidden, self.weather)
+        return ModalLikelihood(self.trials, level, self.hidden, self.weather, self.bend)
 
     def with_weather(self, weather: float) -> "ModalLikelihood":
         """The same with another share that contexts may do beside what the model says."""
-        return ModalLikelihood(self.trials, self.level, self.hidden, weather)
+        return ModalLikelihood(self.trials, self.level, self.hidden, weather, self.bend)
+
+    def bending(self, bend: float) -> "ModalLikelihood":
+        """The same where all modes bend at the same place as they follow contexts."""
+        return ModalLikelihood(self.trials, self.level, self.hidden, self.weather, bend)
 
     def likeliest_level(self, prediction: Prediction) -> float:
         """The error of the model at which a prediction is most probable, none below the usual."""

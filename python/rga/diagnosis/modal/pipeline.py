@@ -13,6 +13,8 @@ from rga.diagnosis.modal.changes import change, moved_modes
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
 from rga.diagnosis.modal.doubts import (
     drifting,
+    following_contexts,
+    lagging,
     of_windows,
     other_freezing,
     thin,
@@ -125,7 +127,7 @@ def _diagnosed(
         doubts.append("modes that were left out are predicted no better with the causes")
     doubts += thin(readings, bool(found.fit.hypotheses))
     doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
-    doubts += other_freezing(likelihood)
+    doubts += lagging(likelihood, found.fit.hypotheses, after) + other_freezing(likelihood)
     doubts += of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z))
     effects = [
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
@@ -142,7 +144,7 @@ def _diagnosed(
         ),
         explanations=_explanations(likelihood, found, criteria),
         groups=mode_groups(model, likelihood, nothing, after),
-        warnings=warnings_of(model, readings),
+        warnings=warnings_of(model, readings) + following_contexts(likelihood, after),
         criteria=criteria,
         seed=seed,
         model_sha256=model.sha256,
