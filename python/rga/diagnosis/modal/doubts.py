@@ -119,7 +119,7 @@ def other_freezing(likelihood: ModalLikelihood) -> list[str]:
 
 def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
     """In words: what of the record says less than it could."""
-    warnings = []
+    warnings = list(readings.unclear)
     without = [name for name in model.modes if name not in readings.modes]
     if without:
         warnings.append(f"modes that are in no window: {', '.join(without)}")
@@ -161,6 +161,10 @@ def odd_entries(model: Model, record: ModalRecord) -> list[str]:
     if twice := record.once().repeated:
         entry = "entry stands" if twice == 1 else "entries stand"
         warnings.append(f"{twice} {entry} in the record more than once: each counts once")
+    alone = int((np.isfinite(record.shapes).sum(axis=1) == 1).sum())
+    if alone:
+        entries = "entry has its shape" if alone == 1 else "entries have their shapes"
+        warnings.append(f"{alone} {entries} at a single point: by that all modes look alike")
     longest = float(np.nanmax(record.duration, initial=0.0))
     if longest > LONG_WINDOW:
         length, unit = duration(longest)

@@ -12,7 +12,8 @@ from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected, mac
+from rga.simulation.modal.looks import unclear_looks
+from rga.simulation.modal.pairing import FEWEST, Expected, mac
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import named_modes
@@ -71,6 +72,7 @@ class ModalReadings(ModalWindows):
         unsure: such windows that are left out, where they are few.
         unnamed: entries of the record that are none of the modes.
         uncovered: windows left out, as a context is not known then.
+        unclear: in words: modes of the model that its points do not see, or do not tell apart.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
     """
 
@@ -85,6 +87,7 @@ class ModalReadings(ModalWindows):
     unsure: int
     unnamed: int
     uncovered: int
+    unclear: tuple[str, ...]
     cost: float
 
     @classmethod
@@ -143,7 +146,8 @@ class ModalReadings(ModalWindows):
                 stated[column] = float(np.nanmedian(sd))
             given = expected[names[column]]
             middle = float(np.exp(np.nanmedian(log_f[:, column])))
-            shape, seen, noise = mean_shape(record.shapes[own], _reference(given, at))
+            seen_by_points = own[:0] if given.unseen else own
+            shape, seen, noise = mean_shape(record.shapes[seen_by_points], _reference(given, at))
             looks.append(Expected(middle, given.within, at[seen], shape))
             shape_noise[column] = noise
         contexts = {
@@ -168,6 +172,7 @@ class ModalReadings(ModalWindows):
             unsure=len(np.unique(record.windows[unsure])),
             unnamed=int((named.mode < 0).sum()),
             uncovered=uncovered,
+            unclear=unclear_looks(expected),
             cost=named.cost,
         )
 
@@ -212,7 +217,8 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
     """The mean of measured shapes, each turned and scaled onto the others.
 
     Args:
-        shapes: float[entries, points]; NaN where a point did not measure.
+        shapes: float[entries, points]; NaN where a point did not measure. One of a single point
+            says nothing.
         reference: what they are turned to first, float[points]; NaN where it says nothing.
 
     Returns:
@@ -225,10 +231,9 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
     >>> mean.tolist(), at.tolist(), noise
     ([0.0, 1.0], [0, 1], 0.0)
     """
+    shapes = shapes[np.isfinite(shapes).sum(1) >= FEWEST]
     seen = np.flatnonzero(np.isfinite(shapes).any(0))
     shapes, reference = shapes[:, seen], reference[seen]
-    some = np.isfinite(shapes).any(1)
-    shapes = shapes[some]
     if not len(shapes) or not np.nan_to_num(shapes).any():
         return np.zeros(0), seen[:0], 0.0
     for _ in range(ROUNDS):

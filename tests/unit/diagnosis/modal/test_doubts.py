@@ -35,6 +35,14 @@ def test_what_can_hardly_be_meant_is_told() -> None:
     assert far == "air lies outside its range -20..40 in 2 windows: check its unit and its zero"
 
 
+def test_shapes_of_a_single_point_are_told() -> None:
+    model, record = measured(1, Hidden(), windows=5)
+    shapes = record.shapes.copy()
+    shapes[:2, 1:] = np.nan
+    (words,) = odd_entries(model, replace(record, shapes=shapes))
+    assert words == "2 entries have their shapes at a single point: by that all modes look alike"
+
+
 @pytest.mark.parametrize(
     ("air", "doubted"),
     [(None, True), ([np.nan] * 4, True), ([5.0] * 4, True), ([1.0, np.nan, 3.0, 2.0], False)],
