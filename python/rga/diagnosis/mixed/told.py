@@ -19,7 +19,7 @@ from rga.diagnosis.modal.account import (
     windows_of,
 )
 from rga.diagnosis.modal.changes import change, moved_modes
-from rga.diagnosis.modal.checks import modes_off, squares
+from rga.diagnosis.modal.checks import modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
     apart_in_time,
     doubtful_windows,
@@ -76,7 +76,7 @@ class ToldModes:
         """In words: why the causes do not account for the modes."""
         likelihood, modal = self._likelihood, self.mixed.fit.modal
         readings = likelihood.readings
-        words = modes_off(likelihood, self._after)
+        words = modes_off(likelihood, self._after) + pairs_in_doubt(likelihood, self._after)
         shown = [number for number in range(len(modal.hypotheses)) if self._shows(number)]
         if shown:
             before, after = self._left_out

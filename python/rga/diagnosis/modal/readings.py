@@ -70,6 +70,7 @@ class ModalReadings(ModalWindows):
         found: share of the windows in which each mode was found, float[modes].
         doubtful: windows of which another pairing is nearly as probable, where they are many.
         unsure: such windows that are left out, where they are few.
+        in_doubt: modes that may be others in such windows.
         unnamed: entries of the record that are none of the modes.
         uncovered: windows left out, as a context is not known then.
         unclear: in words: modes of the model that its points do not see, or do not tell apart.
@@ -85,6 +86,7 @@ class ModalReadings(ModalWindows):
     found: FloatArray
     doubtful: int
     unsure: int
+    in_doubt: tuple[str, ...]
     unnamed: int
     uncovered: int
     unclear: tuple[str, ...]
@@ -170,6 +172,7 @@ class ModalReadings(ModalWindows):
             found=np.isfinite(log_f).mean(0),
             doubtful=0 if few else len(named.doubtful),
             unsure=len(np.unique(record.windows[unsure])),
+            in_doubt=named.in_doubt,
             unnamed=int((named.mode < 0).sum()),
             uncovered=uncovered,
             unclear=unclear_looks(expected),

@@ -80,7 +80,8 @@ class Prediction:
         recorded: the same as sensors there record it, float[k, points].
         mixing: how much of each may be in each measured one, float[modes, k].
         mac: of each with the measured shape, float[modes]; NaN without shape.
-        doubtful: other pairings that are nearly as probable.
+        doubtful: measured modes that are nearly as probably another computed one, with the number
+            of the one and of the other.
         parts: of other modes that may be in each shape at its points, float[k, points] each.
     """
 
@@ -92,7 +93,7 @@ class Prediction:
     recorded: FloatArray
     mixing: FloatArray
     mac: FloatArray
-    doubtful: int
+    doubtful: frozenset[tuple[int, int, int]]
     parts: tuple[FloatArray, ...]
 
     @property
@@ -210,7 +211,7 @@ class ModalTrials(Generic[AnyWindows]):
             mixing=np.concatenate(
                 [share * one.mixing for share, one in zip(shares, states, strict=True)], axis=1
             ),
-            doubtful=sum(one.doubtful for one in states),
+            doubtful=frozenset().union(*(one.doubtful for one in states)),
         )
 
     def looks(self, effects: Mapping[str, Effect]) -> dict[int, dict[str, Expected]]:
@@ -346,7 +347,12 @@ class ModalTrials(Generic[AnyWindows]):
                     for look, one in zip(looks, own, strict=True)
                 ]
             ),
-            sum(self._as_probable(pairing, other, log_f) for other in pairing.others),
+            frozenset(
+                (mode, int(number[mode]), int(other[0][mode]))
+                for other in pairing.others
+                if self._as_probable(pairing, other, log_f)
+                for mode in np.flatnonzero(other[0] != number).tolist()
+            ),
             tuple(
                 parts_of_others(log_f, at_points[:, look.at], int(one))
                 for look, one in zip(looks, number, strict=True)

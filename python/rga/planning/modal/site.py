@@ -142,7 +142,7 @@ class ModalSite:
             traded = test.kind == PARKED_MASS and any(
                 (one.log_f - now.log_f > RAISED).any() for one in then
             )
-            if traded or any(one.doubtful > now.doubtful for one in then):
+            if traded or any(len(one.doubtful) > len(now.doubtful) for one in then):
                 found.append(number)
         return found
 

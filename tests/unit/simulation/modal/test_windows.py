@@ -79,6 +79,18 @@ def test_shapes_name_modes_that_trade_places(tmp_path: Path, model: Model) -> No
     expected = [[4.0, 4.3, 9.1, SHAPES[1, 1]], [4.2, 4.1, np.nan, SHAPES[1, 1]]]
     np.testing.assert_allclose(found.readings, expected, rtol=1e-9)
     assert not len(found.doubtful)
+    assert found.in_doubt == ()
+
+
+def test_modes_in_doubt_are_named(tmp_path: Path, model: Model) -> None:
+    """Of two neighbours no shape was measured."""
+    nothing = np.full(COUNT, np.nan)
+    record = read(
+        table([(0, 4.1, nothing), (0, 4.2, nothing), (0, 9.0, SHAPES[2])]), tmp_path, model
+    )
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.doubtful.tolist() == [0]
+    assert found.in_doubt == ("m0", "m1")
 
 
 def test_what_is_no_expected_mode_has_no_name(tmp_path: Path, model: Model) -> None:
