@@ -19,8 +19,10 @@ DIRECTIONS = ("", "x", "y", "z", "rx", "ry", "rz")
 def is_universal(data: bytes, path: Path) -> bool:
     """Whether a file is a universal one by its first lines, or is called so.
 
-    >>> is_universal(b"    -1\\n    55\\n", Path("a.txt")), is_universal(b"time,f\\n", Path("a.csv"))
-    (True, False)
+    >>> is_universal(b"    -1\\n    55\\n", Path("modes.txt"))
+    True
+    >>> is_universal(b"time,f\\n", Path("modes.csv")), is_universal(b"time,f\\n", Path("modes.uff"))
+    (False, True)
     """
     called_so = bool(data) and path.suffix.lower() in _NAMES
     return called_so or _BEGIN.match(data[:400]) is not None
