@@ -43,6 +43,7 @@ TABLES: dict[str, tuple[bytes, str]] = {
     "rad/s by its header": (table(header="time,f [rad/s]"), "the unit of 'f' is 'rad/s'"),
     "rad/s by its values": (table(lambda f: 2 * np.pi * f), "they look like rad/s"),
     "cycles per minute": (table(lambda f: 60 * f), "they look like cycles per minute"),
+    "a sixtieth": (table(lambda f: f / 60), "they look like Hz divided by 60"),
     "kHz": (table(lambda f: 1e-3 * f), "they look like kHz"),
     "periods": (table(lambda f: 1 / f), "none of the modes that the model expects"),
     "normalised by the first": (table(lambda f: f / first()), "0.574 times as fast"),

@@ -23,6 +23,7 @@ from rga.checking.of_model.stiffness import stiffness
 from rga.checking.of_model.supports import supports
 from rga.checking.of_model.temperatures import temperatures
 from rga.checking.of_model.unused import unused
+from rga.checking.of_modes.looks import looks
 from rga.checking.of_record.channels import channels
 from rga.checking.of_record.clock import clock
 from rga.checking.of_record.codes import codes
@@ -41,6 +42,7 @@ OF_MODEL: tuple[Callable[[OverRanges], Iterable[Finding]], ...] = (
     coordinates,
     materials,
     masses,
+    looks,
     sections,
     stiffness,
     supports,

@@ -86,6 +86,10 @@ def verdict_sentence(findings: "Findings") -> str:
         sentences.append("Nothing is wrong with the model that these data could show.")
         if near := not_ruled_out(findings):
             sentences.append(f"Not ruled out, and too little to be named: {'; or '.join(near)}.")
+    elif undecided(findings):
+        sentences.append(
+            "Nothing speaks against the model, and these data cannot decide whether it is right."
+        )
     elif findings.verdict == "unknown":
         sentences.append(
             "Something speaks against the model, and no kind of effect that is known explains it."
@@ -97,8 +101,14 @@ def verdict_sentence(findings: "Findings") -> str:
     if findings.misfits and findings.verdict != "nothing_wrong":
         sentences.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
     if findings.verdict in ("partial", "unknown"):
-        sentences.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
+        stays = "unexplained" if findings.unexplained.speaks_against else "in doubt"
+        sentences.append(f"What stays {stays}: {findings.unexplained.looks_like}.")
     return " ".join(sentences)
+
+
+def undecided(findings: "Findings") -> bool:
+    """Whether no cause is known, and nothing speaks against the model either."""
+    return findings.verdict == "unknown" and not findings.unexplained.speaks_against
 
 
 def _gain_words(held: "HeldOut") -> str:

@@ -96,10 +96,18 @@ class Unidentifiable(FindingsPart):
 
 
 class Unexplained(FindingsPart):
-    """Structure that is left after the extension."""
+    """Structure that is left after the extension.
+
+    Attributes:
+        share: of the gap.
+        looks_like: in words: what is left, or why the data decide too little.
+        speaks_against: whether some of it speaks against the model; else the data decide too
+            little.
+    """
 
     share: float
     looks_like: str
+    speaks_against: bool = True
 
 
 class Explanation(FindingsPart):

@@ -263,6 +263,7 @@ def test_few_modes_decide_nothing() -> None:
     findings = diagnose_modes(model, record)
     assert findings.verdict == "unknown"
     assert "3 are needed to decide" in findings.unexplained.looks_like
+    assert "these data cannot decide whether it is right" in findings.sentence()
 
 
 @thorough

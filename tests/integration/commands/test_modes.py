@@ -85,6 +85,20 @@ def test_measured_modes_get_their_names(
     assert [one["found"] for one in content["measured"]] == pytest.approx([1 / 3, 1.0])
 
 
+def test_what_modes_hardly_look_like_is_told(rga: Callable[..., Any], mast: Path) -> None:
+    content = json.loads(mast.read_text())
+    content["points"] = {name: one for name, one in content["points"].items() if name[0] == "X"}
+    sway = {"near": 2.0, "within": 0.5}
+    content["modes"] = {name: {**sway, "computed": k} for name, k in (("A", 1), ("B", 2))}
+    mast.write_text(json.dumps(content))
+    done = rga("modes", mast)
+    assert done.out.count("by frequency only") == 1
+    assert "No point sees mode B: all stand still in it" in done.out
+    content["modes"]["C"] = content["modes"]["A"]
+    mast.write_text(json.dumps(content))
+    assert "Modes A and C cannot be told apart" in rga("modes", mast).out
+
+
 def test_a_record_needs_modes_that_are_expected(
     rga: Callable[..., Any], mast: Path, tmp_path: Path
 ) -> None:

@@ -34,6 +34,8 @@ def masses(over: OverRanges) -> Iterator[Finding]:
         remedy = "give masses in kg, and those along members in kg/m"
         yield Finding("warning", f"model {model.name!r}", what, remedy)
     total = sum(one.total for one in budget)
+    if not total and model.modes:
+        return  # effects may bring masses: whether there are modes is looked at with these
     told = [f"{one.of} {one.total / 1000:.3g}" for one in budget[:TOLD]]
     rest = sum(one.total for one in budget[TOLD:])
     told += [f"others {rest / 1000:.3g}"] if rest else []

@@ -1,5 +1,6 @@
 """`rga modes`: natural frequencies and mode shapes."""
 
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -38,6 +39,8 @@ def pairing_words(
     simulator: "ModalSimulator", pairing: "Pairing", frequencies: "FloatArray"
 ) -> str:
     """Which computed mode each expected one is, a line each."""
+    from rga.simulation.modal.looks import unclear_looks
+
     lines = ["expected   near [Hz]   computed     f [Hz]   off [%]    MAC"]
     for (name, one), at, alike in zip(
         simulator.expected.items(), pairing.computed, pairing.mac, strict=True
@@ -46,12 +49,18 @@ def pairing_words(
             lines.append(f"{name:<10} {one.near:9.4f}   none is left for it")
             continue
         off = 100 * (frequencies[at] / one.near - 1)
-        mac = f"{alike[at]:6.3f}" if len(one.shape) else "by frequency only"
+        mac = "by frequency only" if isnan(alike[at]) else f"{alike[at]:6.3f}"
         lines.append(
             f"{name:<10} {one.near:9.4f}   {at + 1:8} {frequencies[at]:10.4f}  {off:+8.2f} {mac}"
         )
     if pairing.others:
-        lines.append(f"{len(pairing.others)} other pairings are nearly as probable.")
+        doubtful = [
+            name
+            for number, name in enumerate(simulator.expected)
+            if any(other[number] != pairing.computed[number] for other, _ in pairing.others)
+        ]
+        lines.append(f"Another pairing is nearly as probable for {', '.join(doubtful)}.")
+    lines += [f"{words[0].upper()}{words[1:]}." for words in unclear_looks(simulator.expected)]
     return "\n".join(lines)
 
 
@@ -129,7 +138,7 @@ def modes(
     typer.echo("mode     f [Hz]   mass along x, y, z [%]   moves most")
     for line in found.to_frame().iter_rows(named=True):
         shares = " ".join(f"{100 * line[f'mass {axis}']:7.2f}" for axis in "xyz")
-        most = f"{line['most at']} along {line['most along']}"
+        most = f"{line['most at']} along {line['most along']}" if line["most at"] else "no node"
         typer.echo(f"{line['mode']:4} {line['f']:10.4f}   {shares}   {most}")
     tons = ", ".join(f"{mass / 1000:.4g}" for mass in found.mass)
     for one in words:

@@ -19,19 +19,19 @@ from rga.diagnosis.modal.account import (
     windows_of,
 )
 from rga.diagnosis.modal.changes import change, moved_modes
-from rga.diagnosis.modal.checks import modes_off, squares
+from rga.diagnosis.modal.checks import modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
     apart_in_time,
+    doubts_of_windows,
     drifting,
-    of_windows,
     thin,
     warnings_of,
     weather,
 )
 from rga.diagnosis.modal.likelihood import MODEL_ERROR, ModalLikelihood
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.remarks import rival_words
 from rga.diagnosis.modal.separating import separating
-from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.laplace import effects_at, extended
 from rga.findings import Findings
@@ -76,7 +76,7 @@ class ToldModes:
         """In words: why the causes do not account for the modes."""
         likelihood, modal = self._likelihood, self.mixed.fit.modal
         readings = likelihood.readings
-        words = modes_off(likelihood, self._after)
+        words = modes_off(likelihood, self._after) + pairs_in_doubt(likelihood, self._after)
         shown = [number for number in range(len(modal.hypotheses)) if self._shows(number)]
         if shown:
             before, after = self._left_out
@@ -84,7 +84,7 @@ class ToldModes:
             if of_structure and after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
             words += thin(readings, causes=True)
-        words += of_windows(likelihood, effects_at(modal.hypotheses, modal.z))
+        words += doubts_of_windows(likelihood, effects_at(modal.hypotheses, modal.z))
         alone = [number for number in shown if not self._in_record(number)]
         words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
         return words + drifting(likelihood, self._after)

@@ -6,7 +6,7 @@ import scipy
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.checks import squares
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.modal.trials import Prediction
+from rga.diagnosis.modal.prediction import Prediction
 from rga.findings.modal_arrays import ModeReading
 from rga.findings.schema import FoundMode, Gap, GroupGap, HeldOut, SensorGap, Windows
 from rga.model import Model

@@ -10,8 +10,9 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.fit import predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings
-from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
 from rga.model.parameter import Factor, Prior

@@ -5,7 +5,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.modal.trials import Prediction
+from rga.diagnosis.modal.prediction import Prediction
 
 #: change of a MAC that is worth telling
 LIKENED = 0.005

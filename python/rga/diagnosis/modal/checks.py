@@ -7,7 +7,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.modal.trials import Prediction
+from rga.diagnosis.modal.prediction import Prediction
 
 #: deviations of a frequency, and of a shape, from which on a mode is off
 OFF = 3.0
@@ -72,8 +72,16 @@ def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
                 f"the shape of mode {name} is not the simulated one "
                 f"(MAC {prediction.mac[mode]:.2f})"
             )
-    if prediction.doubtful:
-        words.append(
-            "another pairing of measured with computed modes is nearly as probable as this one"
-        )
     return words
+
+
+def pairs_in_doubt(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
+    """In words: measured modes that are nearly as probably another computed mode."""
+    if not prediction.doubtful:
+        return []
+    names = likelihood.readings.modes
+    pairs = ", ".join(
+        f"{names[mode]} may be mode {other + 1} of the model in place of {own + 1}"
+        for mode, own, other in sorted(prediction.doubtful)
+    )
+    return [f"another pairing of measured with computed modes is nearly as probable: {pairs}"]

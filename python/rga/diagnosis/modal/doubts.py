@@ -7,6 +7,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import WEATHER, ModalLikelihood, bent_lines
 from rga.diagnosis.modal.points.changes import point_changes
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import (
     MOST_MEMORY,
     REPEATS,
@@ -15,7 +16,6 @@ from rga.diagnosis.modal.readings import (
     context_courses,
     scaled_contexts,
 )
-from rga.diagnosis.modal.trials import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.model import Model
 from rga.model.effect import Effect
@@ -40,9 +40,10 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
     """In words: why so few modes, or modes without shapes, decide nothing."""
     words = []
     if len(readings.modes) < FEW_MODES:
+        was = "was" if len(readings.modes) == 1 else "were"
         words.append(
-            f"{len(readings.modes)} of the modes expected were found, and {FEW_MODES} are needed "
-            "to decide"
+            f"of the modes expected {' and '.join(readings.modes)} alone {was} found, and "
+            f"{FEW_MODES} are needed to decide"
         )
     blind = [
         name for name, look in zip(readings.modes, readings.looks, strict=True) if not len(look.at)
@@ -55,7 +56,7 @@ def thin(readings: ModalReadings, causes: bool) -> list[str]:
     return words
 
 
-def of_windows(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -> list[str]:
+def doubts_of_windows(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -> list[str]:
     """In words: why what was found in windows may not be what it is taken for.
 
     Args:
@@ -76,7 +77,7 @@ def doubtful_windows(readings: ModalReadings) -> list[str]:
         return []
     words = (
         f"in {readings.doubtful} of {len(readings.time)} windows another pairing of the modes "
-        "found is nearly as probable"
+        f"found is nearly as probable ({', '.join(readings.in_doubt)})"
     )
     return [words]
 
@@ -157,11 +158,20 @@ def weather(readings: ModalReadings, causes: Sequence[Hypothesis], after: Predic
     moved = float(np.abs(np.expm1(np.ptp(after.log_f, axis=0))).max())
     if moved >= BEYOND_WEATHER:
         return []
+    unchanging = _unchanging(readings.weather)
+    told = f"{' and '.join(unchanging)} never change" + ("s" if len(unchanging) == 1 else "")
     words = (
-        f"what begins late moves no frequency by more than {moved:.1%}, and no temperature stands "
-        "beside the frequencies: it may be the weather"
+        f"what begins late moves no frequency by more than {moved:.1%}, and "
+        f"{told if unchanging else 'no temperature stands'} beside the frequencies: it may be the "
+        "weather"
     )
     return [words]
+
+
+def _unchanging(contexts: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Contexts that are known in several windows and the same in all, each with its value."""
+    known = {name: one[np.isfinite(one)] for name, one in contexts.items()}
+    return {name: float(one[0]) for name, one in known.items() if len(one) > 1 and np.ptp(one) == 0}
 
 
 def lagging(
@@ -235,7 +245,7 @@ def other_freezing(likelihood: ModalLikelihood) -> list[str]:
 
 def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
     """In words: what of the record says less than it could."""
-    warnings = []
+    warnings = list(readings.unclear)
     without = [name for name in model.modes if name not in readings.modes]
     if without:
         warnings.append(f"modes that are in no window: {', '.join(without)}")
@@ -255,6 +265,12 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
             f"how the frequencies of {', '.join(assumed)} scatter is assumed, as f_sd states it or "
             f"else {100 * UNKNOWN_SCATTER:g} %: they were found in too few windows to show it"
         )
+    if len(readings.time) >= REPEATS:
+        warnings += [
+            f"{name} is {value:g} in every window: a column that never changes tells nothing of "
+            "what frequencies do by it"
+            for name, value in _unchanging(readings.weather).items()
+        ]
     if readings.uncovered:
         warnings.append(
             f"left out: {counted(readings.uncovered, 'window')} in which a context is not known"
@@ -262,7 +278,7 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
     if readings.unsure:
         warnings.append(
             f"left out: {counted(readings.unsure, 'window')} in which another pairing of the modes "
-            "found is nearly as probable"
+            f"found is nearly as probable ({', '.join(readings.in_doubt)})"
         )
     if readings.record.left_out:
         warnings.append(f"columns that are not used: {', '.join(readings.record.left_out)}")
@@ -277,6 +293,10 @@ def odd_entries(model: Model, record: ModalRecord) -> list[str]:
     if twice := record.once().repeated:
         entry = "entry stands" if twice == 1 else "entries stand"
         warnings.append(f"{twice} {entry} in the record more than once: each counts once")
+    alone = int((np.isfinite(record.shapes).sum(axis=1) == 1).sum())
+    if alone:
+        entries = "entry has its shape" if alone == 1 else "entries have their shapes"
+        warnings.append(f"{alone} {entries} at a single point: by that all modes look alike")
     longest = float(np.nanmax(record.duration, initial=0.0))
     if longest > LONG_WINDOW:
         length, unit = duration(longest)

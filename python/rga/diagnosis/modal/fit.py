@@ -11,7 +11,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.modal.trials import Prediction
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import effects_at
 from rga.errors import InputError, UnstableStructureError

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings, scaled_contexts
-from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.simulation.modal.pairing import SHAPE_ERROR, apart, freedom_of_parts, without_parts
 
 #: error that a model makes of what a cause changes of a frequency, as a share of the change:

@@ -10,12 +10,12 @@ from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes
-from rga.diagnosis.modal.checks import left_out_modes, modes_off, squares
+from rga.diagnosis.modal.checks import left_out_modes, modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
+    doubts_of_windows,
     drifting,
     following_contexts,
     lagging,
-    of_windows,
     other_freezing,
     thin,
     warnings_of,
@@ -24,11 +24,12 @@ from rga.diagnosis.modal.doubts import (
 from rga.diagnosis.modal.fit import ModalFit, fitted, shown_by
 from rga.diagnosis.modal.following import with_what_follows
 from rga.diagnosis.modal.likelihood import MODEL_ERROR, ModalLikelihood
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.remarks import apart_words, rival_words
 from rga.diagnosis.modal.search import ModalFound, search
 from rga.diagnosis.modal.separating import separating
-from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.diagnosis.search.laplace import effects_at
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
@@ -121,14 +122,20 @@ def _diagnosed(
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
     left_out = left_out_modes(likelihood, found.fit)
-    doubts = modes_off(likelihood, after)
+    against = modes_off(likelihood, after)
     of_structure = any(not one.at_points for one in found.fit.hypotheses)
     if of_structure and left_out.after.mean() >= left_out.before.mean():
-        doubts.append("modes that were left out are predicted no better with the causes")
-    doubts += thin(readings, bool(found.fit.hypotheses))
-    doubts += weather(readings, found.fit.hypotheses, after) + drifting(likelihood, after)
-    doubts += lagging(likelihood, found.fit.hypotheses, after) + other_freezing(likelihood)
-    doubts += of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z))
+        against.append("modes that were left out are predicted no better with the causes")
+    against += drifting(likelihood, after)
+    doubts = [
+        *against,
+        *pairs_in_doubt(likelihood, after),
+        *thin(readings, bool(found.fit.hypotheses)),
+        *weather(readings, found.fit.hypotheses, after),
+        *lagging(likelihood, found.fit.hypotheses, after),
+        *other_freezing(likelihood),
+        *doubts_of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z)),
+    ]
     effects = [
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
         for number in range(len(found.fit.hypotheses))
@@ -140,7 +147,9 @@ def _diagnosed(
         causes=_causes(likelihood, found, effects, criteria),
         unidentifiable=_unidentifiable(found.first, criteria),
         unexplained=Unexplained(
-            share=_share_left(likelihood, nothing, after), looks_like="; ".join(doubts)
+            share=_share_left(likelihood, nothing, after),
+            looks_like="; ".join(doubts),
+            speaks_against=bool(against),
         ),
         explanations=_explanations(likelihood, found, criteria),
         groups=mode_groups(model, likelihood, nothing, after),

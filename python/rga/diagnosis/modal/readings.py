@@ -12,7 +12,8 @@ from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected, mac
+from rga.simulation.modal.looks import unclear_looks
+from rga.simulation.modal.pairing import FEWEST, Expected, mac
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import NONE, NamedModes, named_modes
@@ -69,10 +70,12 @@ class ModalReadings(ModalWindows):
         found: share of the windows in which each mode was found, float[modes].
         doubtful: windows of which another pairing is nearly as probable, where they are many.
         unsure: such windows that are left out, where they are few.
+        in_doubt: modes that may be others in such windows.
         unnamed: entries of the record that are none of the modes.
         unlike: of expected modes, share of the windows in which they were not found and something
             else swings about where they are expected.
         uncovered: windows left out, as a context is not known then.
+        unclear: in words: modes of the model that its points do not see, or do not tell apart.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
         entries: number of the mode of each entry of the record, int[entries]; negative: none.
     """
@@ -86,9 +89,11 @@ class ModalReadings(ModalWindows):
     found: FloatArray
     doubtful: int
     unsure: int
+    in_doubt: tuple[str, ...]
     unnamed: int
     unlike: dict[str, float]
     uncovered: int
+    unclear: tuple[str, ...]
     cost: float
     entries: IntArray
 
@@ -148,7 +153,8 @@ class ModalReadings(ModalWindows):
                 stated[column] = float(np.nanmedian(sd))
             given = expected[names[column]]
             middle = float(np.exp(np.nanmedian(log_f[:, column])))
-            shape, seen, noise = mean_shape(record.shapes[own], _reference(given, at))
+            seen_by_points = own[:0] if given.unseen else own
+            shape, seen, noise = mean_shape(record.shapes[seen_by_points], _reference(given, at))
             looks.append(Expected(middle, given.within, at[seen], shape))
             shape_noise[column] = noise
         contexts = {
@@ -172,9 +178,11 @@ class ModalReadings(ModalWindows):
             found=np.isfinite(log_f).mean(0),
             doubtful=0 if few else len(named.doubtful),
             unsure=len(np.unique(record.windows[unsure])),
+            in_doubt=named.in_doubt,
             unnamed=int((named.mode == NONE).sum()),
             unlike=_unlike_modes(named, record, expected),
             uncovered=uncovered,
+            unclear=unclear_looks(expected),
             cost=named.cost,
             entries=np.array([columns.get(int(number), -1) for number in mode]),
         )
@@ -239,7 +247,8 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
     """The mean of measured shapes, each turned and scaled onto the others.
 
     Args:
-        shapes: float[entries, points]; NaN where a point did not measure.
+        shapes: float[entries, points]; NaN where a point did not measure. One of a single point
+            says nothing.
         reference: what they are turned to first, float[points]; NaN where it says nothing.
 
     Returns:
@@ -252,10 +261,9 @@ def mean_shape(shapes: FloatArray, reference: FloatArray) -> tuple[FloatArray, I
     >>> mean.tolist(), at.tolist(), noise
     ([0.0, 1.0], [0, 1], 0.0)
     """
+    shapes = shapes[np.isfinite(shapes).sum(1) >= FEWEST]
     seen = np.flatnonzero(np.isfinite(shapes).any(0))
     shapes, reference = shapes[:, seen], reference[seen]
-    some = np.isfinite(shapes).any(1)
-    shapes = shapes[some]
     if not len(shapes) or not np.nan_to_num(shapes).any():
         return np.zeros(0), seen[:0], 0.0
     for _ in range(ROUNDS):

@@ -1,7 +1,7 @@
 """What a model with effects predicts of the modes that were measured."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Generic, TypeVar
 
@@ -11,6 +11,7 @@ from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.modal.points.errors import PointErrors, mixing
 from rga.diagnosis.modal.points.recorded import as_recorded
+from rga.diagnosis.modal.prediction import Computed, Prediction
 from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.stages import of_windows, stages
 from rga.diagnosis.modal.standing import stands_late, without_standing
@@ -46,60 +47,6 @@ RIGHT = 0.03
 MOST, KEPT, SOLVED = 200, 2**25, 8
 
 AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
-
-
-@dataclass(frozen=True)
-class Computed:
-    """Modes of a structure as they are computed.
-
-    Attributes:
-        log_f: [ln Hz], float[computed].
-        moving: motion of all nodes along the axes, float[computed, nodes, 3].
-        at_points: at the points, float[computed, points].
-        shift: logarithm of the factor by which a clock reads frequencies larger.
-    """
-
-    log_f: FloatArray
-    moving: FloatArray
-    at_points: FloatArray
-    shift: float
-
-
-@dataclass(frozen=True)
-class Prediction:
-    """Modes as a model has them.
-
-    Attributes:
-        log_f: [ln Hz], float[windows, modes], or of the contexts that stand for all.
-        shapes: motion of all nodes along the axes in the middle of what the contexts were,
-            averaged over the windows, float[modes, nodes, 3].
-        number: of the computed mode that each is, there, int[modes].
-        at_points: motion that is read at the points, with what sensors there make of it, averaged
-            as the shapes are, float[modes, points].
-        every: motion of all computed modes of the structures at the points, float[k, points].
-        recorded: the same as sensors there record it, float[k, points].
-        mixing: how much of each may be in each measured one, float[modes, k].
-        mac: of each with the measured shape, float[modes]; NaN without shape.
-        doubtful: other pairings that are nearly as probable.
-        parts: of other modes that may be in each shape at its points, float[k, points] each.
-    """
-
-    log_f: FloatArray
-    shapes: FloatArray
-    number: IntArray
-    at_points: FloatArray
-    every: FloatArray
-    recorded: FloatArray
-    mixing: FloatArray
-    mac: FloatArray
-    doubtful: int
-    parts: tuple[FloatArray, ...]
-
-    @property
-    def size(self) -> int:
-        """How many numbers it holds."""
-        several = (self.log_f, self.shapes, self.at_points, self.every, self.recorded, self.mixing)
-        return sum(one.size for one in (*several, *self.parts))
 
 
 class ModalTrials(Generic[AnyWindows]):
@@ -210,7 +157,7 @@ class ModalTrials(Generic[AnyWindows]):
             mixing=np.concatenate(
                 [share * one.mixing for share, one in zip(shares, states, strict=True)], axis=1
             ),
-            doubtful=sum(one.doubtful for one in states),
+            doubtful=frozenset().union(*(one.doubtful for one in states)),
         )
 
     def looks(self, effects: Mapping[str, Effect]) -> dict[int, dict[str, Expected]]:
@@ -353,7 +300,12 @@ class ModalTrials(Generic[AnyWindows]):
                     for look, one in zip(looks, own, strict=True)
                 ]
             ),
-            sum(self._as_probable(pairing, other, log_f) for other in pairing.others),
+            frozenset(
+                (mode, int(number[mode]), int(other[0][mode]))
+                for other in pairing.others
+                if self._as_probable(pairing, other, log_f)
+                for mode in np.flatnonzero(other[0] != number).tolist()
+            ),
             tuple(
                 parts_of_others(log_f, at_points[:, look.at], int(one))
                 for look, one in zip(looks, number, strict=True)

@@ -12,9 +12,10 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.likelihood import CHANGE_ERROR, MODEL_ERROR, WEATHER, standing_errors
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalWindows
 from rga.diagnosis.modal.standing import weather
-from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.errors import InputError
 from rga.experiments.candidates import Added, LoadTest, rest
 from rga.experiments.measurement_model import Errors
@@ -142,7 +143,7 @@ class ModalSite:
             traded = test.kind == PARKED_MASS and any(
                 (one.log_f - now.log_f > RAISED).any() for one in then
             )
-            if traded or any(one.doubtful > now.doubtful for one in then):
+            if traded or any(len(one.doubtful) > len(now.doubtful) for one in then):
                 found.append(number)
         return found
 

@@ -50,7 +50,7 @@ def read_format(
         return read_matlab(data, path, mapping)
     if is_catman(data):
         return read_catman_binary(data, path, mapping)
-    if is_universal(data):
+    if is_universal(data, path):
         return read_histories(path, mapping)
     return _read_text(decoded(data, path, mapping.encoding), mapping, known)
 

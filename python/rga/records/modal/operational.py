@@ -59,12 +59,12 @@ def operational_modes(motion: FloatArray, step: float, highest: float) -> list[O
     """The modes in a window of readings, the lowest first.
 
     Args:
-        motion: what sensors of one kind read, float[samples, sensors].
+        motion: what sensors of one kind read, each of which moves, float[samples, sensors].
         step: between samples [s].
         highest: frequency that is looked for [Hz].
 
     Raises:
-        InputError: samples are too few or too far apart, or a sensor does not move.
+        InputError: samples are too few or too far apart.
         MissingPackageError: pyOMA2 is not installed.
     """
     if not 0 < PER_PERIOD * highest * step <= 1.5:
@@ -73,10 +73,6 @@ def operational_modes(motion: FloatArray, step: float, highest: float) -> list[O
             "highest",
             f"look for frequencies up to {1.5 / (PER_PERIOD * step):.3g} Hz",
         )
-    if not np.isfinite(motion).all():
-        raise InputError("a reading is missing", "window", "give a stretch without gaps")
-    if not (np.ptp(motion, axis=0) > 0).all():
-        raise InputError("a sensor does not move", "window", "leave it out")
     of_each = int(max(1, 1.0 / (PER_PERIOD * highest * step)))
     rows = max(FEWEST, min(ROWS, TALLEST // motion.shape[1]))
     if len(motion) < of_each * rows * LEAST:
@@ -141,7 +137,8 @@ def windows_of(measured: Decay, seconds: float) -> list[Decay]:
         seconds: that each lasts.
 
     Raises:
-        InputError: not one window lasts as long, or one holds no two readings.
+        InputError: not one window lasts as long, or one holds no two readings; a reading is
+            missing, or a sensor does not move in a window.
     """
     samples = round(seconds / measured.step)
     if samples < 2:
@@ -153,10 +150,12 @@ def windows_of(measured: Decay, seconds: float) -> list[Decay]:
     count = len(measured.motion) // samples
     if count == 0:
         raise InputError(
-            f"the file lasts {measured.duration:g} s", f"windows of {seconds:g} s", "give shorter"
+            f"the file lasts {measured.duration:g} s",
+            f"windows of {seconds:g} s",
+            f"give shorter windows: --minutes {measured.duration / 60:.3g} at most",
         )
     half = measured.duration / 2
-    return [
+    windows = [
         Decay(
             measured.motion[at * samples : (at + 1) * samples],
             measured.step,
@@ -165,6 +164,28 @@ def windows_of(measured: Decay, seconds: float) -> list[Decay]:
         )
         for at in range(count)
     ]
+    for window in windows:
+        _check_motion(window)
+    return windows
+
+
+def _check_motion(window: Decay) -> None:
+    """Refuse a window in which a reading is missing, or a sensor does not move."""
+    for point, readings in zip(window.points, window.motion.T, strict=True):
+        where = f"sensor {point!r}, window about {window.middle}"
+        missing = int((~np.isfinite(readings)).sum())
+        if missing:
+            raise InputError(
+                f"{missing} of {len(readings)} readings are missing",
+                where,
+                "give a stretch without gaps by --from and --until, or leave the column out",
+            )
+        if not np.ptp(readings) > 0:
+            raise InputError(
+                f"the sensor does not move: it reads {readings[0]:g} all the time",
+                where,
+                "leave the column out: name the others by --column",
+            )
 
 
 def operational_table(

@@ -97,7 +97,7 @@ def modal_record_of(table: Table, model: Model) -> ModalRecord:
     if bad.any():
         row = int(np.argmax(bad))
         raise InputError(
-            "there is no frequency" if np.isnan(frequency[row]) else f"{frequency[row]:g} is none",
+            _no_frequency(float(frequency[row])),
             table.where(row, FREQUENCY),
             "give frequencies in Hz, not normalised; leave out the line of a mode not found",
         )
@@ -135,6 +135,10 @@ def modal_record_of(table: Table, model: Model) -> ModalRecord:
         left_out=tuple(name for name in columns if name not in used),
         sha256=table.sha256,
     ).once()
+
+
+def _no_frequency(value: float) -> str:
+    return "there is no frequency" if np.isnan(value) else f"{value:g} Hz is no natural frequency"
 
 
 def modes_of_columns(model: Model) -> dict[str, str]:
@@ -192,7 +196,7 @@ def _wide(table: Table, model: Model, named: Mapping[str, str]) -> ModalRecord:
     if bad.any():
         row, column = np.argwhere(bad)[0]
         raise InputError(
-            f"{found[row, column]:g} is none",
+            _no_frequency(float(found[row, column])),
             table.where(int(row), chosen[column]),
             "give frequencies in Hz, not normalised; leave the cell of a mode not found empty",
         )

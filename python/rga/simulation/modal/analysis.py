@@ -16,6 +16,7 @@ from rga.notebook import short_html
 from rga.provenance import versions
 from rga.quantities import counted
 from rga.simulation.contexts import Contexts
+from rga.simulation.modal.points import STILL
 from rga.simulation.modal.structures import ModalStructures, computed_modes
 
 #: modes that may be asked for
@@ -46,19 +47,25 @@ class Modes:
     def to_frame(self) -> pl.DataFrame:
         """One line a mode: mode, f [Hz], share of the mass along x, y, z [-], most at, most along.
 
-        `most at` and `most along` say which node moves most, and along which axis.
+        `most at` and `most along` say which node moves most, and along which axis; they are empty
+        where all nodes stand still, and members between them move.
         """
         moving = np.abs(self.shapes[:, :, :3]).reshape(len(self.shapes), -1)
-        node, axis = np.divmod(moving.argmax(axis=1), 3) if len(moving) else ([], [])
+        # The whole mass moves by this much at a modal mass of 1 kg.
+        together = 1.0 / np.sqrt(max(float(self.mass.max()), np.finfo(float).tiny))
         names = list(self.model.nodes)
+        most = [
+            divmod(int(one.argmax()), 3) if one.max() > STILL * together else None for one in moving
+        ]
         return pl.DataFrame(
             {
                 "mode": np.arange(1, len(self.frequencies) + 1),
                 "f": self.frequencies,
                 **{f"mass {name}": self.participating[:, at] for at, name in enumerate(AXES)},
-                "most at": [names[at] for at in node],
-                "most along": [AXES[at] for at in axis],
-            }
+                "most at": [None if at is None else names[at[0]] for at in most],
+                "most along": [None if at is None else AXES[at[1]] for at in most],
+            },
+            schema_overrides={"most at": pl.String, "most along": pl.String},
         )
 
     def shapes_to_frame(self) -> pl.DataFrame:

@@ -13,6 +13,8 @@ from rga.arrays import FloatArray, IntArray
 LEAST_LENGTH = float(np.finfo(float).tiny)
 #: share of the longest shape below which a shape is rounding: the mode moves none of the points
 STILL = 1e-12
+#: points that say anything of a shape: at a single one all are alike
+FEWEST = 2
 #: what 1 - MAC of a mode and itself is, on average, where the model errs and sensors are noisy
 SHAPE_ERROR = 0.05
 #: pairings that are as good but for this are all carried: a factor of a hundred in probability
@@ -34,13 +36,19 @@ class Expected:
         near: frequency about which it is expected [Hz].
         within: share of that by which it may well differ.
         at: numbers of the points of its shape, int[points].
-        shape: its motion there, float[points]; empty: known by its frequency alone.
+        shape: its motion there, float[points]; empty, or zero all over: known by its frequency
+            alone.
     """
 
     near: float
     within: float
     at: IntArray
     shape: FloatArray
+
+    @property
+    def unseen(self) -> bool:
+        """Whether all points of its shape stand still in it, and so see nothing of it."""
+        return len(self.shape) > 0 and not self.shape.any()
 
 
 @dataclass(frozen=True)
@@ -170,7 +178,7 @@ def unlike_mixed(shape: FloatArray, own: FloatArray, parts: FloatArray) -> float
     """
     seen = np.isfinite(shape) & np.isfinite(own)
     whole = float(shape[seen] @ shape[seen])
-    if whole == 0.0:
+    if whole == 0.0 or seen.sum() < FEWEST:
         return np.nan
     off, within = apart(shape[seen], own[seen], parts[:, seen])
     spread = np.sqrt(0.5 * SHAPE_ERROR * whole)
@@ -184,7 +192,8 @@ def unlike_computed(
     """The same of all expected modes and all computed ones, float[expected, computed].
 
     Args:
-        expected: modes whose shapes were measured; of those that have none it is NaN.
+        expected: modes whose shapes were measured; of those that have none, or one of a single
+            point, it is NaN.
         coupled: how much of each computed mode may be in the others, as `couplings` has it.
         shapes: of the computed modes for the same modal mass at all points,
             float[computed, points].
@@ -192,7 +201,7 @@ def unlike_computed(
     table = np.full((len(expected), len(shapes)), np.nan)
     where: dict[bytes, list[int]] = {}
     for number, one in enumerate(expected):
-        if one.shape.any():
+        if one.shape.any() and len(one.shape) >= FEWEST:
             where.setdefault(one.at.tobytes(), []).append(number)
     for numbers in where.values():
         measured = np.array([expected[number].shape for number in numbers])
@@ -325,14 +334,15 @@ def turned(
 
 
 def _macs(one: Expected, shapes: FloatArray) -> FloatArray:
-    """Of a mode and shapes, float[computed]; NaN where no point of it has been measured."""
+    """Of a mode and shapes, float[computed]; NaN where these say nothing of each other."""
     there = shapes[:, one.at]
     seen = np.isfinite(there)
     own = np.where(seen, there, 0.0)
     lengths = (own**2).sum(1) * (seen @ one.shape**2)
     along = (own @ one.shape) ** 2
     alike = np.divide(along, lengths, out=np.zeros(len(shapes)), where=lengths > 0)
-    return np.where(seen.any(axis=1), alike, np.nan)
+    told = (seen.sum(axis=1) >= FEWEST) & one.shape.any()
+    return np.where(told, alike, np.nan)
 
 
 def _in_order(

@@ -121,7 +121,9 @@ class ModalSimulator:
         if mode.computed is not None:
             middle = {name: sum(one.range) / 2 for name, one in self.model.context.items()}
             structure = self._structures.one_under(middle)
-            frequencies, shapes = self._at_points(structure, mode.computed)
+            # Beside modes that move the points it shows whether this one does.
+            count = max(mode.computed, len(self.model.modes)) + BEYOND
+            frequencies, shapes = self._at_points(structure, count)
             if len(frequencies) < mode.computed:
                 raise InputError(
                     f"the model has {len(frequencies)} modes, and mode {name!r} is number "

@@ -12,7 +12,13 @@ from rga.simulation.modal.pairing import Expected, mac
 from rga.simulation.modal.windows import NamedModes
 
 #: what stands for Hz by mistake, over what it would be in Hz
-OTHER_UNITS = {"rad/s": 2 * np.pi, "cycles per minute": 60.0, "kHz": 1e-3, "rad/ms": 2e-3 * np.pi}
+OTHER_UNITS = {
+    "rad/s": 2 * np.pi,
+    "cycles per minute": 60.0,
+    "Hz divided by 60": 1 / 60,
+    "kHz": 1e-3,
+    "rad/ms": 2e-3 * np.pi,
+}
 #: factor by which no structure that is still that of the model has all of its modes off; and the
 #: same where a frequency is one by so little: of those that are normalised one is
 FAR, OFF, ONE = 2.5, 1.25, 0.01

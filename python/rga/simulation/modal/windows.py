@@ -39,6 +39,7 @@ class NamedModes:
             not found.
         mac: of the entries with their modes, float[entries]; NaN without shape.
         doubtful: windows of which another pairing is nearly as probable, int.
+        in_doubt: names of the modes that are others in such pairings.
         cost: of all pairs and of entries without one, as a negative logarithm of a probability.
     """
 
@@ -47,6 +48,7 @@ class NamedModes:
     readings: FloatArray
     mac: FloatArray
     doubtful: IntArray
+    in_doubt: tuple[str, ...]
     cost: float
 
 
@@ -106,6 +108,7 @@ def named_modes(
     alike = np.full(len(record), np.nan)
     windows = record.windows
     doubtful, cost = [], 0.0
+    differing = np.zeros(len(names), dtype=bool)
     given = list(expected.values())
     parts_of_given = _parts(given, len(model.points))
     for window in range(windows.max(initial=-1) + 1):
@@ -126,6 +129,9 @@ def named_modes(
         open_names = [_left_open(pairing.computed, other, near) for other, _ in pairing.others]
         if None in open_names:
             doubtful.append(window)
+        for (other, _), modes in zip(pairing.others, open_names, strict=True):
+            if modes is None:
+                differing |= other != pairing.computed
         left = np.setdiff1d(np.arange(len(entries)), pairing.computed)
         lost = np.flatnonzero(pairing.computed < 0)
         if len(left) and len(lost):
@@ -157,7 +163,9 @@ def named_modes(
             look = changed.get(int(windows[entry]), {}).get(sensor.mode, expected[sensor.mode])
             readings[windows[entry], at] = shapes[entry, point] * _scale(look, shapes[entry])
     times = np.array([record.time[windows == one][0] for one in range(len(readings))])
-    return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64), cost)
+    windows_in_doubt = np.array(doubtful, dtype=np.int64)
+    in_doubt = tuple(np.array(names)[differing].tolist())
+    return NamedModes(times, mode, readings, alike, windows_in_doubt, in_doubt, cost)
 
 
 def _left_open(best: IntArray, other: IntArray, near: FloatArray) -> set[int] | None:

@@ -33,10 +33,10 @@ def respond_to(structure: Structure, loads: LoadArrays, outputs: OutputArrays) -
 def refused(
     structure: Structure, error: _core.UnstableStructure | _core.InvalidInput
 ) -> InputError:
-    """What the core refuses, in the names of the model."""
+    """What the core refuses, in the names of the model; how to mend it, where the core says so."""
     if isinstance(error, _core.InvalidInput):
-        told = _named(structure, str(error))
-        return InputError(told, _of_member(structure, str(error)), "mend that value")
+        what, _, how = _named(structure, str(error)).partition("; ")
+        return InputError(what, _of_member(structure, str(error)), how or "mend that value")
     place = f"node {node_name(structure, error.node)!r} in {DOFS[error.dof]}"
     return UnstableStructureError(
         f"the structure can move: {place} meets no resistance",

@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from independent.modal_bridge import Hidden, measured
-from rga.diagnosis.modal.doubts import odd_entries, weather
+from rga.diagnosis.modal.checks import pairs_in_doubt
+from rga.diagnosis.modal.doubts import odd_entries, thin, warnings_of, weather
+from rga.diagnosis.modal.readings import ModalReadings
 from rga.model.schema import ContextVariable
+
+AIR = ContextVariable(unit="degC", range=(-20.0, 40.0))
 
 
 def test_of_a_sound_record_nothing_is_said() -> None:
@@ -19,8 +23,7 @@ def test_of_a_sound_record_nothing_is_said() -> None:
 
 def test_what_can_hardly_be_meant_is_told() -> None:
     model, record = measured(1, Hidden(), windows=5)
-    air = ContextVariable(unit="degC", range=(-20.0, 40.0))
-    model = model.model_copy(update={"context": {"air": air}})
+    model = model.model_copy(update={"context": {"air": AIR}})
     again = record.entries(np.ones(len(record), dtype=bool))
     time, frequency, shapes = again.time.copy(), again.frequency.copy(), again.shapes.copy()
     time[1], frequency[1], shapes[1] = time[0], frequency[0], shapes[0]
@@ -35,15 +38,56 @@ def test_what_can_hardly_be_meant_is_told() -> None:
     assert far == "air lies outside its range -20..40 in 2 windows: check its unit and its zero"
 
 
+def test_shapes_of_a_single_point_are_told() -> None:
+    model, record = measured(1, Hidden(), windows=5)
+    shapes = record.shapes.copy()
+    shapes[:2, 1:] = np.nan
+    (words,) = odd_entries(model, replace(record, shapes=shapes))
+    assert words == "2 entries have their shapes at a single point: by that all modes look alike"
+
+
 @pytest.mark.parametrize(
-    ("air", "doubted"),
-    [(None, True), ([np.nan] * 4, True), ([5.0] * 4, True), ([1.0, np.nan, 3.0, 2.0], False)],
+    ("air", "told"),
+    [
+        (None, "no temperature stands beside the frequencies"),
+        ([np.nan] * 4, "no temperature stands beside the frequencies"),
+        ([5.0] * 4, "air never changes beside the frequencies"),
+        ([1.0, np.nan, 3.0, 2.0], None),
+    ],
 )
 def test_a_small_late_change_may_be_the_weather_unless_that_was_measured(
-    air: list[float] | None, doubted: bool
+    air: list[float] | None, told: str | None
 ) -> None:
     readings: Any = SimpleNamespace(weather={} if air is None else {"air": np.array(air)})
     late: Any = SimpleNamespace(onset=3600.0)
     after: Any = SimpleNamespace(log_f=np.array([[0.0], [0.0], [0.01], [0.01]]))
-    assert bool(weather(readings, [late], after)) is doubted
+    doubts = weather(readings, [late], after)
+    assert [told is not None and told in one for one in doubts] == [True] * (told is not None)
     assert not weather(readings, [], after)
+
+
+@pytest.mark.parametrize("windows", [5, 12])
+def test_a_column_that_never_changes_is_told(windows: int) -> None:
+    """Of few windows it may well be as warm in all of them."""
+    model, record = measured(1, Hidden(), windows=windows)
+    stuck = replace(record, contexts={"air": np.full(len(record), 5.0)})
+    model = model.model_copy(update={"context": {"air": AIR}})
+    told = [one for one in warnings_of(model, ModalReadings.of(model, stuck)) if "air" in one]
+    words = "air is 5 in every window: a column that never changes tells nothing"
+    assert [one.startswith(words) for one in told] == [True] * (windows > 5)
+
+
+def test_modes_that_are_few_are_named() -> None:
+    readings: Any = SimpleNamespace(modes=("m1",), looks=[SimpleNamespace(at=[0])])
+    assert thin(readings, causes=True) == [
+        "of the modes expected m1 alone was found, and 3 are needed to decide"
+    ]
+
+
+def test_pairs_that_are_in_doubt_are_named() -> None:
+    likelihood: Any = SimpleNamespace(readings=SimpleNamespace(modes=("m1", "m2")))
+    prediction: Any = SimpleNamespace(doubtful=frozenset({(1, 6, 7)}))
+    (words,) = pairs_in_doubt(likelihood, prediction)
+    assert words.endswith("nearly as probable: m2 may be mode 8 of the model in place of 7")
+    prediction.doubtful = frozenset()
+    assert pairs_in_doubt(likelihood, prediction) == []

@@ -15,8 +15,9 @@ from rga.diagnosis.modal.likelihood import (
     ModalLikelihood,
     standing_errors,
 )
+from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings
-from rga.diagnosis.modal.trials import ModalTrials, Prediction
+from rga.diagnosis.modal.trials import ModalTrials
 from rga.model.effects.members.elastic_modulus import ElasticModulus
 from rga.simulation.modal.pairing import apart
 

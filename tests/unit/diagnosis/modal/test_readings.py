@@ -37,6 +37,29 @@ def test_without_shapes_nothing_is_said_of_them() -> None:
     assert (len(mean), len(at), noise) == (0, 0, 0.0)
 
 
+def test_a_shape_of_a_single_point_is_none() -> None:
+    alone = np.array([[2.0, np.nan], [np.nan, 1.0]])
+    mean, at, noise = mean_shape(alone, np.array([1.0, 1.0]))
+    assert (len(mean), len(at), noise) == (0, 0, 0.0)
+    mean, at, _ = mean_shape(np.vstack([alone, [3.0, 4.0]]), np.array([1.0, 1.0]))
+    np.testing.assert_allclose(mean, [0.6, 0.8])
+
+
+def test_what_is_measured_of_a_mode_in_which_all_points_stand_still_is_no_shape() -> None:
+    model, record = measured(1, Hidden(), windows=5)
+    first, *others = model.modes
+    still = dict.fromkeys(model.modes[first].shape, 0.0)
+    unseen = model.modes[first].model_copy(update={"shape": still})
+    readings = ModalReadings.of(
+        model.model_copy(update={"modes": {**model.modes, first: unseen}}), record
+    )
+    looks = dict(zip(readings.modes, readings.looks, strict=True))
+    assert not len(looks[first].at)
+    assert all(len(looks[name].at) for name in others)
+    (words,) = readings.unclear
+    assert words.startswith(f"no point sees mode {first}: all stand still in it")
+
+
 def test_windows_without_what_drives_the_structure_are_left_out() -> None:
     model, record = measured(1, Hidden(), windows=20)
     softer = {"kind": "member_stiffness", "group": "bottom bracing", "factor": {"context": "frost"}}

@@ -119,7 +119,7 @@ class Rebuilt:
     [
         ({"Fn": []}, "Fn has the dimensions 1 x 0"),
         ({"Fn": [np.nan, np.nan]}, "no mode was found in any window"),
-        ({"Fn": [-0.2, 7.0]}, "-0.2 is none"),
+        ({"Fn": [-0.2, 7.0]}, "-0.2 Hz is no natural frequency"),
         ({"Fn": [np.inf, 7.0]}, "the value is infinite"),
         ({"Fn": ["x", "y"]}, "Fn holds no numbers"),
         ({"Fn": np.array([4.0 + 1j])}, "Fn holds no numbers"),

@@ -67,7 +67,7 @@ def test_windows_modes_and_channels(tmp_path: Path, mast: Model) -> None:
         ({"frequencies": None}, "no variable 'frequencies'"),
         ({"frequencies": np.full((2, 3), np.nan)}, "no mode was found"),
         ({"frequencies": np.ones((3, 3))}, "frequencies has the dimensions 3 x 3"),
-        ({"frequencies": -np.ones((2, 3))}, "-1 is none"),
+        ({"frequencies": -np.ones((2, 3))}, "-1 Hz is no natural frequency"),
         ({"damping": np.ones((2, 2))}, "damping has the dimensions 2 x 2"),
         ({"modeshapes": SHAPES[:, :, :3]}, "modeshapes has the dimensions 2 x 3 x 3"),
         ({"channels": None}, "modeshapes has the dimensions 2 x 3 x 4"),

@@ -79,6 +79,7 @@ def test_modes_at_nodes(tmp_path: Path, mast: Model, phase: float | None) -> Non
         (mode(1, 4.1, SHAPES[0], kind=3), "are no motion"),
         (mode(1, 4.1, SHAPES[0])[:-60] + "    -1\n", "nodes and values do not fit together"),
         (mode(1, 4.1, SHAPES[0]).replace("4.10000e+00", "4.1x000e+00"), "cannot be read"),
+        ("time,f\n0,4.1\n", "no dataset begins in it with a line of -1"),
     ],
 )
 def test_universal_files_without_modes(tmp_path: Path, mast: Model, text: str, told: str) -> None:
@@ -86,6 +87,17 @@ def test_universal_files_without_modes(tmp_path: Path, mast: Model, text: str, t
     with pytest.raises(InputError) as refused:
         load_modal_record(tmp_path / "modes.uff", mast)
     assert told in str(refused.value)
+
+
+@pytest.mark.parametrize("kept", [20, 100, 250, -8])
+def test_a_file_that_breaks_off_is_refused(tmp_path: Path, mast: Model, kept: int) -> None:
+    """Inside its second dataset, of which the first modes would be read without a word."""
+    first, second = (mode(k, 4.1 * k, shape) for k, shape in enumerate(SHAPES, 1))
+    (tmp_path / "modes.uff").write_text(first + second[:kept], encoding="ascii")
+    with pytest.raises(InputError) as refused:
+        load_modal_record(tmp_path / "modes.uff", mast)
+    assert "the file breaks off in dataset" in str(refused.value)
+    assert f"begins in line {first.count(chr(10)) + 1} and has no end" in str(refused.value)
 
 
 def test_time_histories_are_columns_that_count_along_their_axes(tmp_path: Path) -> None:

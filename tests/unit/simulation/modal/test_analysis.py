@@ -154,3 +154,14 @@ def test_loads_whose_size_is_measured_are_no_part_of_what_swings() -> None:
     crane = {"kind": "nodal_load", "forces": {"30": [0, 0, -1]}, "factor": {"context": "crane"}}
     loaded = loaded.extended({"crane": read_effect(crane, "crane")})
     assert rga.modes(loaded, 4).frequencies.tolist() == rga.modes(model, 4).frequencies.tolist()
+
+
+def test_where_members_move_between_nodes_no_node_moves_most() -> None:
+    """A pinned beam of one member bends in a wave between its ends, which only turn."""
+    build = rga.ModelBuilder("beam").add_material("steel", E=210e9, density=7850)
+    build.add_section("box", A=0.02, Iy=4e-4, Iz=6e-4, J=5e-4).add_node("a").add_node("b", 8.0)
+    build.add_member("a", "b", "box", kind="frame").support("a", "ux", "uy", "uz", "rx", "rz")
+    build.support("b", "uy", "uz", "rx", "rz")
+    lines = rga.modes(build.build(), 3).to_frame().rows(named=True)
+    most = [(one["most at"], one["most along"]) for one in lines]
+    assert most == [(None, None), (None, None), ("b", "x")]

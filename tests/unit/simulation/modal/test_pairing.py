@@ -171,3 +171,25 @@ def test_a_mode_that_moves_no_point_is_like_nothing_and_breaks_nothing() -> None
     assert np.isfinite(parts).all()
     assert 0.0 <= unlike <= 1.0
     assert np.isfinite(table).all()
+
+
+def test_by_a_single_point_all_modes_look_alike() -> None:
+    """Its share of one shape is as good as that of any other: only frequencies tell."""
+    shapes, log_f = waves(3), np.log([4.0, 4.001, 9.0])
+    at = np.array([5])
+    modes = [Expected(near, 0.15, at, shapes[k, at]) for k, near in enumerate((4.0, 9.0))]
+    assert np.isnan(unlike_computed(modes, couplings(log_f), shapes)).all()
+    assert np.isnan(unlike_mixed(shapes[0, at], shapes[1, at], np.zeros((0, 1))))
+    assert np.isnan(paired(modes, np.exp(log_f), shapes).mac).all()
+
+
+def test_a_mode_in_which_all_points_stand_still_is_paired_by_its_frequency() -> None:
+    shapes = waves(3)
+    still = Expected(4.5, 0.15, np.arange(POINTS), np.zeros(POINTS))
+    modes = [*expected(shapes[:1], [4.0]), still]
+    shapes[1] = 0.0
+    found = paired(modes, np.array([4.0, 4.6, 9.0]), shapes)
+    assert still.unseen
+    assert not modes[0].unseen
+    assert found.computed.tolist() == [0, 1]
+    assert np.isnan(found.mac[1]).all()

@@ -92,6 +92,19 @@ def test_the_mode_of_a_number_is_known_by_its_shape_from_then_on() -> None:
     np.testing.assert_allclose(found[0, :2], by_number, rtol=1e-9)
 
 
+@pytest.mark.parametrize("way", "VL")
+def test_a_mode_that_moves_no_point_has_no_shape_of_round_off(way: str) -> None:
+    """The lowest mode alone at the points: what it leaves of rounding has nothing beside it."""
+    content = beam()
+    content["points"] = {name: one for name, one in content["points"].items() if name[0] == way}
+    content["modes"] = {"lowest": {"near": 3.0, "computed": 1}}
+    simulator = ModalSimulator(read_model(content, "a test"))
+    lowest = rga.modes(simulator.model, 1, {"cold": 0.5})
+    along = {"V": "z", "L": "y"}[way]
+    unseen = lowest.to_frame()["most along"][0] != along
+    assert simulator.expected["lowest"].unseen is unseen
+
+
 def test_rows_that_share_a_structure_read_the_same(model: Model) -> None:
     found = ModalSimulator(model).predict({"cold": [0.2, 0.8, 0.2]})
     assert found.shape == (3, 4)

@@ -79,6 +79,18 @@ def test_shapes_name_modes_that_trade_places(tmp_path: Path, model: Model) -> No
     expected = [[4.0, 4.3, 9.1, SHAPES[1, 1]], [4.2, 4.1, np.nan, SHAPES[1, 1]]]
     np.testing.assert_allclose(found.readings, expected, rtol=1e-9)
     assert not len(found.doubtful)
+    assert found.in_doubt == ()
+
+
+def test_modes_in_doubt_are_named(tmp_path: Path, model: Model) -> None:
+    """Of two neighbours no shape was measured."""
+    nothing = np.full(COUNT, np.nan)
+    record = read(
+        table([(0, 4.1, nothing), (0, 4.2, nothing), (0, 9.0, SHAPES[2])]), tmp_path, model
+    )
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.doubtful.tolist() == [0]
+    assert found.in_doubt == ("m0", "m1")
 
 
 def test_what_is_no_expected_mode_has_no_name(tmp_path: Path, model: Model) -> None:
@@ -196,7 +208,11 @@ def test_a_wide_table_has_a_column_a_mode(model: Model, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("cells", "said"),
-    [("-4.0,9.0", "-4 is none"), (",", "no mode was found"), ("0,9", "0 is none")],
+    [
+        ("-4.0,9.0", "-4 Hz is no natural frequency"),
+        (",", "no mode was found"),
+        ("0,9", "0 Hz is no natural frequency"),
+    ],
 )
 def test_a_wide_table_without_frequencies_is_refused(
     model: Model, tmp_path: Path, cells: str, said: str

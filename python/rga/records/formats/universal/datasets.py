@@ -9,17 +9,23 @@ from rga.lazy import needing_extras
 
 #: as such a file begins: a line of -1, and the number of a dataset
 _BEGIN = re.compile(rb"\s*-1 *\r?\n *\d{1,6}[ bB]?[^\n]*\r?\n")
+#: endings of names of such files; and what begins a dataset, and ends it, wherever pyuff sees it
+_NAMES = (".uff", ".unv")
+_ABOUT = re.compile(rb" {4}-1 *\r?$", re.MULTILINE)
 #: translations and rotations as datasets number them
 DIRECTIONS = ("", "x", "y", "z", "rx", "ry", "rz")
 
 
-def is_universal(data: bytes) -> bool:
-    """Whether a file is a universal one by its first lines.
+def is_universal(data: bytes, path: Path) -> bool:
+    """Whether a file is a universal one by its first lines, or is called so.
 
-    >>> is_universal(b"    -1\\n    55\\n"), is_universal(b"time,f\\n-1,55\\n")
-    (True, False)
+    >>> is_universal(b"    -1\\n    55\\n", Path("modes.txt"))
+    True
+    >>> is_universal(b"time,f\\n", Path("modes.csv")), is_universal(b"time,f\\n", Path("modes.uff"))
+    (False, True)
     """
-    return _BEGIN.match(data[:400]) is not None
+    called_so = bool(data) and path.suffix.lower() in _NAMES
+    return called_so or _BEGIN.match(data[:400]) is not None
 
 
 def datasets(path: Path, number: int, what: str) -> list[dict[str, Any]]:
@@ -31,9 +37,10 @@ def datasets(path: Path, number: int, what: str) -> list[dict[str, Any]]:
         what: they hold, in words.
 
     Raises:
-        InputError: there is none, or one is damaged.
+        InputError: there is none, or one is damaged or breaks off.
         MissingPackageError: pyuff is not installed.
     """
+    _check_ends(path)
     with needing_extras():
         import pyuff
     try:
@@ -55,6 +62,27 @@ def datasets(path: Path, number: int, what: str) -> list[dict[str, Any]]:
             "export it as well",
         )
     return found
+
+
+def _check_ends(path: Path) -> None:
+    """Refuse a file in which no dataset begins, or the last one has no end: pyuff leaves it out."""
+    data = path.read_bytes()
+    about = [one.start() for one in _ABOUT.finditer(data)]
+    if not about:
+        raise InputError(
+            "the file is called a universal file, and no dataset begins in it with a line of -1",
+            str(path),
+            "export it again, or give a table a name that ends in .csv",
+        )
+    if len(about) % 2:
+        number, *_ = data[about[-1] :].split()[1:2] or [b"without a number"]
+        begun, last = (1 + data.count(b"\n", 0, at) for at in (about[-1], len(data.rstrip())))
+        raise InputError(
+            f"the file breaks off in dataset {number.decode('ascii', 'replace')}, which begins in "
+            f"line {begun} and has no end",
+            f"{path}, line {last}",
+            "export or copy it again",
+        )
 
 
 def point_of(node: int, direction: int) -> str:

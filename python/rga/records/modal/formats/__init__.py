@@ -41,7 +41,7 @@ def read_modal_table(path: str | Path, known: Collection[str]) -> Table:
 def _foreign(data: bytes, path: Path) -> Table | None:
     if is_netcdf(data):
         return read_netcdf(data, path)
-    if is_universal(data):
+    if is_universal(data, path):
         return read_universal_modes(path)
     arrays = arrays_of_file(data, path)
     return None if arrays is None else table_of_arrays(arrays, path)

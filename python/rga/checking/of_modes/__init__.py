@@ -1,0 +1,1 @@
+"""Checks of the modes that a model expects."""
