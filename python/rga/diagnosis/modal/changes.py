@@ -6,9 +6,12 @@ from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.prediction import Prediction
+from rga.findings.phrases import place_words
 
 #: change of a MAC that is worth telling
 LIKENED = 0.005
+#: change of every frequency, over the error that a model makes, by which a cause shows in none
+UNMOVED = 0.25
 #: change of a frequency that is worth telling, as a share of it
 WORTH_TELLING = 5e-4
 
@@ -54,3 +57,24 @@ def _likened_modes(likelihood: ModalLikelihood, without: Prediction, after: Pred
         if gained[k] > max(LIKENED, 0.1 * gained.max())
     ]
     return f"with it these shapes are the simulated ones: {', '.join(told)}" if told else ""
+
+
+def moving_nothing(likelihood: ModalLikelihood, fit: ModalFit) -> list[str]:
+    """In words: causes of the structure that leave all modes as they were.
+
+    What is held for always shows against the error that a model makes anyway.
+    """
+    after, words = fit.prediction, []
+    for number, one in enumerate(fit.hypotheses):
+        others = [other for k, other in enumerate(fit.hypotheses) if k != number]
+        without = predicted(likelihood, others, np.delete(fit.z, fit.of(number)))
+        if one.at_points or one.onset is not None or without is None or after is None:
+            continue
+        moved = float(np.abs(after.log_f - without.log_f).max())
+        likened = float(np.nan_to_num(after.mac - without.mac).max(initial=0.0))
+        if moved < UNMOVED * likelihood.level and likened < LIKENED:
+            words.append(
+                f"{place_words([one.kind.title, *one.place.values()])} moves no frequency by more "
+                f"than {moved:.2%} and makes no shape more alike"
+            )
+    return words

@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
-from rga.diagnosis.modal.changes import change, moved_modes
+from rga.diagnosis.modal.changes import change, moved_modes, moving_nothing
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
     doubts_of_windows,
@@ -126,7 +126,7 @@ def _diagnosed(
     of_structure = any(not one.at_points for one in found.fit.hypotheses)
     if of_structure and left_out.after.mean() >= left_out.before.mean():
         against.append("modes that were left out are predicted no better with the causes")
-    against += drifting(likelihood, after)
+    against += moving_nothing(likelihood, found.fit) + drifting(likelihood, after)
     doubts = [
         *against,
         *pairs_in_doubt(likelihood, after),
