@@ -208,7 +208,11 @@ def test_a_wide_table_has_a_column_a_mode(model: Model, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("cells", "said"),
-    [("-4.0,9.0", "-4 Hz is no natural frequency"), (",", "no mode was found"), ("0,9", "0 Hz is no natural frequency")],
+    [
+        ("-4.0,9.0", "-4 Hz is no natural frequency"),
+        (",", "no mode was found"),
+        ("0,9", "0 Hz is no natural frequency"),
+    ],
 )
 def test_a_wide_table_without_frequencies_is_refused(
     model: Model, tmp_path: Path, cells: str, said: str
