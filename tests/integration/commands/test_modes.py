@@ -146,6 +146,22 @@ def test_a_record_and_modes_are_diagnosed_together(rga: Callable[..., Any], tmp_
     assert "Measured over simulated" in report
 
 
+def test_modes_that_decide_nothing_speak_against_nothing(
+    rga: Callable[..., Any], tmp_path: Path
+) -> None:
+    model, record = measured(0, Hidden(), modes=2)
+    write_model(model, tmp_path / "model.json")
+    (tmp_path / "modes.csv").write_text(written_modes(record))
+    files = tmp_path / "model.json", "--modal", tmp_path / "modes.csv"
+    done = rga("diagnose", *files, "-o", tmp_path / "found")
+    assert done.code == 0, done.err
+    assert "Nothing speaks against the model, and these data cannot decide" in done.out
+    assert "m0 and m1 alone were found, and 3 are needed" in done.out
+    report = (tmp_path / "found" / "report.html").read_text()
+    assert "These data cannot decide" in report
+    assert "Cause not known" not in report
+
+
 def test_nothing_to_diagnose_is_refused(
     rga: Callable[..., Any], mast: Path, tmp_path: Path
 ) -> None:

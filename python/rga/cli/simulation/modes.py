@@ -78,10 +78,11 @@ def measured_words(measured: "DataFrame", named: "NamedModes", record: "ModalRec
             shown += "  by frequency only" if line["MAC"] is None else f" {line['MAC']:6.3f}"
         lines.append(shown)
     none = int((named.mode == NONE).sum())
+    windows, found = counted(len(named.time), "window"), counted(len(record), "mode")
+    doubtful = counted(len(named.doubtful), "window")
     lines.append(
-        f"{counted(len(named.time), 'window')}, {len(record)} modes found in them, {none} of which "
-        f"are none of those expected; in {counted(len(named.doubtful), 'window')} another pairing "
-        "is nearly as probable."
+        f"{windows}, {found} found in them, {none} of which are none of those expected; in "
+        f"{doubtful} another pairing is nearly as probable."
     )
     if record.repeated:
         entry = "entry stands" if record.repeated == 1 else "entries stand"

@@ -366,6 +366,7 @@ def _reordered(best: IntArray, other: IntArray, near: FloatArray) -> bool:
     """Whether a pairing differs by the order of modes that are expected close to each other."""
     changed = np.flatnonzero(best != other)
     alike = np.array_equal(np.sort(best[changed]), np.sort(other[changed]))
+    alike &= bool((best[changed] >= 0).all())
     return alike and bool(np.ptp(np.log(near[changed])) < COUPLING)
 
 

@@ -13,7 +13,7 @@ from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records.modal.read import load_modal_record
 from rga.simulation.modal.simulator import ModalSimulator
-from rga.simulation.modal.windows import named_modes
+from rga.simulation.modal.windows import OPEN, named_modes
 
 COUNT = 6
 POINTS = tuple(f"A{at}" for at in range(COUNT))
@@ -100,6 +100,34 @@ def test_what_is_no_expected_mode_has_no_name(tmp_path: Path, model: Model) -> N
     )
     found = named_modes(record, model, ModalSimulator(model).expected)
     assert found.mode.tolist() == [0, -1, -1]
+
+
+def test_a_mode_of_which_a_point_is_turned_keeps_its_name(tmp_path: Path, model: Model) -> None:
+    turned = SHAPES * np.where(np.arange(COUNT) == 2, -1.0, 1.0)
+    record = read(table([(0, 4.0, turned[0]), (0, 9.1, SHAPES[2])]), tmp_path, model)
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.mode.tolist() == [0, 2]
+    assert found.mac[0] < 0.5 < found.mac[1]
+    assert not len(found.doubtful)
+
+
+def test_of_close_modes_one_that_was_found_alone_may_be_either(
+    tmp_path: Path, model: Model
+) -> None:
+    both = [SHAPES[0] + SHAPES[1], SHAPES[0] - SHAPES[1]]
+    record = read(
+        table([(0, 4.0, both[0]), (0, 4.02, both[1]), (1, 4.01, both[0]), (1, 9.0, SHAPES[2])]),
+        tmp_path,
+        model,
+    )
+    given = ModalSimulator(model).expected
+    close = {**given, "m1": replace(given["m1"], near=given["m0"].near)}
+    found = named_modes(record, model, close)
+    assert found.mode.tolist() == [0, 1, OPEN, 2]
+    assert not len(found.doubtful)
+    # Of modes that lie apart the window is in doubt.
+    apart = named_modes(record, model, given)
+    assert apart.doubtful.tolist() == [0, 1]
 
 
 def test_a_window_in_which_the_structure_is_another_has_modes_of_its_own(

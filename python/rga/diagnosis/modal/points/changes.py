@@ -84,12 +84,20 @@ def _read(
     along, squares = np.zeros((2, len(predicted), shapes.shape[1]))
     for entry in np.flatnonzero(modes >= 0):
         window = windows[entry]
-        own, shape = shapes[entry], predicted[window, modes[entry]]
-        seen = np.flatnonzero(np.isfinite(own))
-        own, shape = own[seen], shape[seen]
-        lengths = float(np.linalg.norm(own)), float(np.linalg.norm(shape))
-        if min(lengths) > 0.0:
-            own, shape = own / lengths[0], shape / lengths[1]
-            along[window, seen] += own * float(own @ shape) * shape
-            squares[window, seen] += shape**2
+        shape = predicted[window, modes[entry]]
+        seen = np.flatnonzero(np.isfinite(shapes[entry]) & (shape != 0.0))
+        length = float(np.linalg.norm(shape[seen]))
+        times = shapes[entry, seen] / shape[seen]
+        scale = _middle(times, shape[seen] ** 2) if length > 0.0 else 0.0
+        if scale:
+            weights = (shape[seen] / length) ** 2
+            along[window, seen] += times / scale * weights
+            squares[window, seen] += weights
     return np.where(squares > MOVING, along / np.maximum(squares, 1e-300), np.nan)
+
+
+def _middle(values: FloatArray, weights: FloatArray) -> float:
+    """Median of weighted values: a sensor that is wrong must not scale what the others read."""
+    order = np.argsort(values)
+    summed = np.cumsum(weights[order])
+    return float(values[order][np.searchsorted(summed, 0.5 * summed[-1])])
