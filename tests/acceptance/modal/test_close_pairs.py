@@ -49,6 +49,18 @@ def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
     assert findings.causes == []
 
 
+@pytest.mark.parametrize("bay", ["braces 2", pytest.param("braces 5", marks=pytest.mark.thorough)])
+def test_what_keeps_a_mast_alike_on_all_sides_is_named_with_its_size(bay: str) -> None:
+    """Pairs have one frequency with it as without it, and shapes that turn from trial to trial."""
+    hidden = Hidden(stiffness={bay: 0.5}, onset=20)
+    findings = diagnose_modes(*measured(0, hidden, modes=7, structure=mast))
+    (cause,) = findings.causes
+    assert cause.effect["group"] == bay
+    low, high = cause.effect["factor"]["ci90"]
+    assert low < 0.5 < high < 1.2 * low
+    assert high > 1.01 * low
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("bay", ["braces 2", "braces 5"])
 def test_the_bay_that_has_lost_its_braces_is_named(bay: str) -> None:

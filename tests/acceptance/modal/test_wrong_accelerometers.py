@@ -4,6 +4,7 @@ The truth is a frame with scatter, solved by plain NumPy; who analyses it holds 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -96,6 +97,27 @@ def test_one_that_shows_half_is_named_with_its_factor(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_one_that_shows_too_much_is_named_with_its_factor(seed: int) -> None:
+    model, record = measured(seed, Hidden())
+    findings = diagnose_modes(model, scaled(record, {POINT: 1.5}))
+    assert findings.verdict == "named"
+    assert places(findings) == [("sensor_gain", POINT)]
+    low, high = findings.causes[0].effect["factor"]["ci90"]
+    assert 1.2 < low < 1.5 < high < 1.8
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_one_that_is_turned_in_the_middle_is_told_with_its_moment(seed: int) -> None:
+    model, record = measured(seed, Hidden())
+    late = record.windows >= 20
+    shapes = np.where(late[:, None], turned(record).shapes, record.shapes)
+    findings = diagnose_modes(model, replace(record, shapes=shapes))
+    assert findings.verdict in ("partial", "unknown")
+    assert all("point" in one.effect for one in findings.causes)
+    assert f"{POINT} from 72000.0 on" in findings.unexplained.looks_like
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_two_that_are_exchanged_are_named(seed: int) -> None:
     model, record = measured(seed, Hidden())
     findings = diagnose_modes(model, swapped(record))
@@ -125,9 +147,9 @@ def test_beside_soft_bearings_both_are_named(spoil: Spoil, kind: str) -> None:
     soft = Hidden(spring={"b0n": 1.5e7, "b0s": 1.5e7})
     model, record = measured(0, soft)
     findings = diagnose_modes(model, spoil(record))
-    kinds = [one.effect["kind"] for one in findings.causes]
-    assert kinds == ["support_flexibility", kind]
-    assert set(findings.causes[0].effect["support"]) == {"west n", "west s"}
+    found = {one.effect["kind"]: one.effect for one in findings.causes}
+    assert found.keys() == {"support_flexibility", kind}
+    assert set(found["support_flexibility"]["support"]) == {"west n", "west s"}
     assert places(findings)[0][0] == kind
 
 

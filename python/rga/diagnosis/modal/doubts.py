@@ -179,20 +179,22 @@ def lagging(
 ) -> list[str]:
     """In words: that weather of some windows before explains as much as what begins late."""
     readings = likelihood.readings
-    varying = any(True for _ in scaled_contexts(readings.weather))
-    if not varying or all(one.onset is None for one in causes):
+    courses = len(bent_lines(readings.weather, len(readings.time)))
+    few = len(readings.time) - LAGS < 2 * (1 + courses)
+    if not courses or few or all(one.onset is None for one in causes):
         return []
     explained = _left_by_weather(likelihood, after, 0)
     nothing = likelihood.trials.predict({})
-    for lag in range(1, LAGS + 1):
-        if _left_by_weather(likelihood, nothing, lag) <= explained:
-            words = (
-                f"{', '.join(readings.weather)} of {counted(lag, 'window')} before explains as "
-                "much as what begins late: a temperature inside the structure, which lags behind "
-                "the air, may be all of it; give that one"
-            )
-            return [words]
-    return []
+    left = {lag: _left_by_weather(likelihood, nothing, lag) for lag in range(1, LAGS + 1)}
+    best = min(left, key=lambda lag: left[lag])
+    if left[best] > explained:
+        return []
+    words = (
+        f"{', '.join(readings.weather)} of {counted(best, 'window')} before explains as much as "
+        "what begins late: a temperature inside the structure, which lags behind the air, may be "
+        "all of it; give that one"
+    )
+    return [words]
 
 
 def _left_by_weather(likelihood: ModalLikelihood, prediction: Prediction, lag: int) -> float:

@@ -7,11 +7,25 @@ from typing import Any
 import numpy as np
 import pytest
 
+from independent.accelerometers import scaled
 from independent.modal_bridge import Hidden, measured
+from rga.arrays import FloatArray
 from rga.diagnosis.modal.checks import pairs_in_doubt
-from rga.diagnosis.modal.doubts import odd_entries, thin, warnings_of, weather
+from rga.diagnosis.modal.doubts import (
+    following_contexts,
+    lagging,
+    odd_entries,
+    thin,
+    unlike_modes,
+    warnings_of,
+    weather,
+)
+from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
+from rga.diagnosis.modal.trials import ModalTrials
+from rga.model import Model
 from rga.model.schema import ContextVariable
+from rga.records.modal.record import ModalRecord
 
 AIR = ContextVariable(unit="degC", range=(-20.0, 40.0))
 
@@ -91,3 +105,62 @@ def test_pairs_that_are_in_doubt_are_named() -> None:
     assert words.endswith("nearly as probable: m2 may be mode 8 of the model in place of 7")
     prediction.doubtful = frozenset()
     assert pairs_in_doubt(likelihood, prediction) == []
+
+
+def warm(windows: int) -> FloatArray:
+    """Days of the air [degC]."""
+    return np.asarray(5.0 + 8.0 * np.sin(np.arange(windows) / 4.0))
+
+
+def following(share: float, lag: int, windows: int = 60) -> tuple[Model, ModalRecord]:
+    """A bridge whose frequencies follow the air of some windows before, over its range."""
+    model, record = measured(1, Hidden(), windows=windows)
+    model = model.model_copy(update={"context": {"air": AIR}})
+    air = warm(windows)
+    before = 5.0 + 8.0 * np.sin((np.arange(windows) - lag) / 4.0)
+    factor = np.exp(-share * (before - air.mean()) / np.ptp(air))
+    air_of = air[record.windows]
+    return model, replace(
+        record, frequency=record.frequency * factor[record.windows], contexts={"air": air_of}
+    )
+
+
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.06])
+def test_more_of_the_weather_than_is_usual_is_told(share: float) -> None:
+    model, record = following(share, 0)
+    likelihood = ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+    told = following_contexts(likelihood, likelihood.trials.predict({}))
+    assert [one.startswith("frequencies follow air by up to") for one in told] == [True] * (
+        share > 0.03
+    )
+
+
+@pytest.mark.parametrize("lag", [0, 3])
+def test_weather_that_lags_is_told_where_something_begins_late(lag: int) -> None:
+    model, record = following(0.02, lag)
+    likelihood = ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+    nothing = likelihood.trials.predict({})
+    late: Any = SimpleNamespace(onset=3600.0)
+    always: Any = SimpleNamespace(onset=None)
+    told = lagging(likelihood, [late], nothing)
+    assert [one.split(" before")[0] for one in told] == ["air of 3 windows"] * (lag > 0)
+    assert lagging(likelihood, [always], nothing) == []
+
+
+def test_few_windows_say_nothing_of_a_lag() -> None:
+    model, record = following(0.02, 3, windows=10)
+    likelihood = ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+    late: Any = SimpleNamespace(onset=3600.0)
+    assert lagging(likelihood, [late], likelihood.trials.predict({})) == []
+
+
+@pytest.mark.parametrize("points", [0, 12])
+def test_what_swings_otherwise_where_modes_are_expected_is_told(points: int) -> None:
+    """So many points are turned from the middle on: of one or two a mode keeps its name."""
+    model, record = measured(1, Hidden())
+    other = scaled(record, dict.fromkeys(list(model.points)[:points], -1.0))
+    late = (record.windows >= 20)[:, None]
+    mixed = replace(record, shapes=np.where(late, other.shapes, record.shapes))
+    told = unlike_modes(ModalReadings.of(model, mixed))
+    assert len(told) == (points > 2)
+    assert all("something swings in another shape" in one for one in told)

@@ -125,9 +125,6 @@ def test_of_close_modes_one_that_was_found_alone_may_be_either(
     found = named_modes(record, model, close)
     assert found.mode.tolist() == [0, 1, OPEN, 2]
     assert not len(found.doubtful)
-    # Of modes that lie apart the window is in doubt.
-    apart = named_modes(record, model, given)
-    assert apart.doubtful.tolist() == [0, 1]
 
 
 def test_a_window_in_which_the_structure_is_another_has_modes_of_its_own(

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
-from rga.simulation.modal.windows import MEDIAN_STEP
 
-#: windows on either side of a change, and standard deviations from which on it is no chance
-EITHER, SURE = 5, 6.0
-#: change of what a sensor reads that is worth telling, as a share of it; and how many times that of
-#: the point in the middle it is
-LEAST, TIMES = 0.2, 3.0
+#: windows on either side of a change, standard deviations from which on it is no chance, and about
+#: how many moments are tried
+EITHER, SURE, SPLITS = 5, 6.0, 100
+#: median size of a normal variable, in its standard deviations
+NORMAL = 0.6744897501960817
+#: change of what a sensor reads that is worth telling, as a share of it; and points for each that
+#: changes: where more do, it is the structure's doing
+LEAST, TIMES = 0.25, 3.0
 #: share of a shape of length one, squared, that must be at a point in a window to say anything
 MOVING = 1e-3
 
@@ -52,26 +54,35 @@ def point_changes(
     [(2, 10, 0.5)]
     """
     read = _read(shapes, windows, modes, predicted)
-    found: list[PointChange] = []
-    sizes = []
+    found, sizes = [], []
     for point, course in enumerate(read.T):
         seen = np.flatnonzero(np.isfinite(course))
-        own = course[seen]
-        if len(own) < 2 * EITHER:
+        if len(seen) < 2 * EITHER:
             continue
-        spread = max(float(np.median(np.abs(np.diff(own)))) / MEDIAN_STEP, 1e-12)
-        before = np.cumsum(own)[EITHER - 1 : len(own) - EITHER]
-        counts = np.arange(EITHER, len(own) - EITHER + 1)
-        steps = (own.sum() - before) / (len(own) - counts) - before / counts
-        sure = np.abs(steps) / spread / np.sqrt(1.0 / counts + 1.0 / (len(own) - counts))
-        best = int(np.argmax(sure))
-        first = float(before[best] / counts[best])
-        size = float(steps[best]) / max(abs(first), abs(first + steps[best]), 1e-12)
-        sizes.append(abs(size))
-        if sure[best] > SURE and abs(size) > LEAST:
-            times = (first + float(steps[best])) / (first or 1e-12)
-            found.append(PointChange(point, int(seen[counts[best]]), times))
+        own = course[seen]
+        at, before, after = _split(own)
+        off = np.abs(own - np.where(np.arange(len(own)) < at, before, after))
+        spread = max(float(np.median(off)) / NORMAL, 1e-12)
+        error = spread * np.sqrt(np.pi / 2 * (1.0 / at + 1.0 / (len(own) - at)))
+        sure = abs(after - before) / error
+        sizes.append(abs(after - before) / max(abs(before), abs(after), 1e-12))
+        if sure > SURE and sizes[-1] > LEAST:
+            found.append(PointChange(point, int(seen[at]), after / (before or 1e-12)))
     return found if len(found) * TIMES < len(sizes) else []
+
+
+def _split(course: FloatArray) -> tuple[int, float, float]:
+    """Where a course changes the likeliest, and the medians before and behind that.
+
+    By medians, and sums of what lies about them: a window that lacks a mode, or has another, is no
+    change.
+    """
+    best = (np.inf, 0, 0.0, 0.0)
+    for at in range(EITHER, len(course) - EITHER + 1, 1 + len(course) // SPLITS):
+        before, after = float(np.median(course[:at])), float(np.median(course[at:]))
+        about = float(np.abs(course[:at] - before).sum() + np.abs(course[at:] - after).sum())
+        best = min(best, (about, at, before, after))
+    return best[1:]
 
 
 def _read(
