@@ -59,7 +59,7 @@ from rga.numerics.seeds import as_seed
 from rga.provenance import versions
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.modal.record import ModalRecord
-from rga.simulation import Simulator
+from rga.simulation import ModalSimulator, Simulator
 
 Progress = Callable[[str, float], None]
 #: fewer readings of most channels show too little of the scatter
@@ -175,7 +175,8 @@ def _diagnose(
     faults = {fault: fault_effect(fault, prepared.record) for fault in prepared.faults}
     named = {cause_name(model, effect): effect for effect in effects}
     broken = {f"fault of {fault.sensor}": effect for fault, effect in faults.items()}
-    extended = model.extended({**named, **broken})
+    known = model if told is None else ModalSimulator(model).with_shapes()
+    extended = known.extended({**named, **broken})
     before, believed = whole.simulated(start), whole.believed(found.problem)
     after = whole.at_zero(found.problem, believed.predict(Simulator(extended.without_zeros())))
     gained = whole.gain(before, after, found.fit.hypotheses, seed)

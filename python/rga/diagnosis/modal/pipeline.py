@@ -49,6 +49,7 @@ from rga.numerics.seeds import as_seed
 from rga.provenance import versions
 from rga.records.modal.read import load_modal_record
 from rga.records.modal.record import ModalRecord
+from rga.simulation import ModalSimulator
 
 Progress = Callable[[str, float], None]
 #: decimals of log-odds
@@ -140,7 +141,8 @@ def _diagnosed(
         as_dead(estimated(found.fit, number), criteria.channels.dead_gain)
         for number in range(len(found.fit.hypotheses))
     ]
-    extended = model.extended({cause_name(model, effect): effect for effect in effects})
+    with_causes = {cause_name(model, effect): effect for effect in effects}
+    extended = ModalSimulator(model).with_shapes().extended(with_causes)
     findings = Findings(
         verdict=_verdict(found, bool(doubts), criteria),
         gap=mode_gap(model, likelihood, (nothing, after), left_out.before, left_out.after),

@@ -88,6 +88,21 @@ class ModalSimulator:
             self._as_recorded(shown, recorded, self._structures.table(contexts))
         return shown
 
+    def with_shapes(self) -> Model:
+        """The model with shapes of its modes that were known by their number.
+
+        Another model may have another mode of that number.
+        """
+        points = list(self.model.points)
+        modes = dict(self.model.modes)
+        for name, look in self.expected.items():
+            if modes[name].computed is not None and not look.unseen:
+                shape = {
+                    points[at]: float(one) for at, one in zip(look.at, look.shape, strict=True)
+                }
+                modes[name] = modes[name].model_copy(update={"computed": None, "shape": shape})
+        return self.model.model_copy(update={"modes": modes})
+
     def pair(self, contexts: Contexts | None = None) -> tuple[Pairing, FloatArray, FloatArray]:
         """Which computed mode is which, under one row of contexts.
 

@@ -92,6 +92,18 @@ def test_the_mode_of_a_number_is_known_by_its_shape_from_then_on() -> None:
     np.testing.assert_allclose(found[0, :2], by_number, rtol=1e-9)
 
 
+def test_a_model_that_is_extended_keeps_the_shapes_of_modes_known_by_their_number() -> None:
+    named = {"first": {"near": 3.0, "computed": 1}, "second": {"near": 3.0, "computed": 2}}
+    simulator = ModalSimulator(read_model(beam(modes=named), "a test"))
+    known = simulator.with_shapes()
+    assert [one.computed for one in known.modes.values()] == [None, None]
+    again = read_model(json.loads(model_text(known)), "again")
+    for name, look in ModalSimulator(again).expected.items():
+        np.testing.assert_allclose(look.shape, simulator.expected[name].shape, rtol=1e-12)
+    given = read_model(beam(modes=MODES, sensors=SENSORS), "a test")
+    assert ModalSimulator(given).with_shapes() == given
+
+
 @pytest.mark.parametrize("way", "VL")
 def test_a_mode_that_moves_no_point_has_no_shape_of_round_off(way: str) -> None:
     """The lowest mode alone at the points: what it leaves of rounding has nothing beside it."""
