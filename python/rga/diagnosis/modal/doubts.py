@@ -99,11 +99,13 @@ def changing_points(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -
     """In words: that sensors at points read otherwise from some window on."""
     readings, trials = likelihood.readings, likelihood.trials
     points = list(trials.model.points)
+    # What is said of a sensor as a whole would hide that it changes.
+    of_structure = {name: one for name, one in causes.items() if not one.points_named()}
     found = point_changes(
         readings.shapes_at(points),
         readings.record.windows,
         readings.entries,
-        trials.at_points_by_window(causes),
+        trials.at_points_by_window(of_structure),
     )
     told = [
         f"{points[one.point]} from {readings.label(readings.time[one.window])} on "
