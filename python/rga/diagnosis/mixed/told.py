@@ -24,7 +24,10 @@ from rga.diagnosis.modal.doubts import (
     apart_in_time,
     doubts_of_windows,
     drifting,
+    following_contexts,
+    lagging,
     thin,
+    unlike_modes,
     warnings_of,
     weather,
 )
@@ -84,9 +87,11 @@ class ToldModes:
             if of_structure and after.mean() >= before.mean():
                 words.append("modes that were left out are predicted no better with the causes")
             words += thin(readings, causes=True)
-        words += doubts_of_windows(likelihood, effects_at(modal.hypotheses, modal.z))
-        alone = [number for number in shown if not self._in_record(number)]
-        words += weather(readings, [modal.hypotheses[number] for number in alone], self._after)
+        words += unlike_modes(readings) + doubts_of_windows(
+            likelihood, effects_at(modal.hypotheses, modal.z)
+        )
+        alone = [modal.hypotheses[number] for number in shown if not self._in_record(number)]
+        words += weather(readings, alone, self._after) + lagging(likelihood, alone, self._after)
         return words + drifting(likelihood, self._after)
 
     def told(
@@ -113,7 +118,7 @@ class ToldModes:
         for number in range(len(self.mixed.fit.hypotheses)):
             causes[first + number] = self._cause(causes[first + number], number)
         readings, record = likelihood.readings, self.record
-        warnings = warnings_of(model, readings)
+        warnings = warnings_of(model, readings) + following_contexts(likelihood, self._after)
         warnings += apart_in_time(readings.time, record.origin + record.time)
         told = findings.model_copy(
             update={

@@ -63,12 +63,7 @@ def doubts_of_windows(likelihood: ModalLikelihood, causes: Mapping[str, Effect])
         likelihood: of the modes.
         causes: of them.
     """
-    readings = likelihood.readings
-    return [
-        *doubtful_windows(readings),
-        *unlike_modes(readings),
-        *changing_points(likelihood, causes),
-    ]
+    return [*doubtful_windows(likelihood.readings), *changing_points(likelihood, causes)]
 
 
 def doubtful_windows(readings: ModalReadings) -> list[str]:

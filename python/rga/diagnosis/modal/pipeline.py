@@ -18,6 +18,7 @@ from rga.diagnosis.modal.doubts import (
     lagging,
     other_freezing,
     thin,
+    unlike_modes,
     warnings_of,
     weather,
 )
@@ -128,6 +129,7 @@ def _diagnosed(
     if of_structure and left_out.after.mean() >= left_out.before.mean():
         against.append("modes that were left out are predicted no better with the causes")
     against += moving_nothing(likelihood, found.fit) + drifting(likelihood, after)
+    against += unlike_modes(readings)
     doubts = [
         *against,
         *pairs_in_doubt(likelihood, after),
