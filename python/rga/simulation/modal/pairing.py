@@ -286,10 +286,8 @@ def mixture(
         are nearest.
     """
     rotation = np.eye(len(log_f))
-    order = np.argsort(log_f[computed], kind="stable")
-    gaps = np.diff(log_f[computed[order]])
     alone = np.setdiff1d(np.arange(len(log_f)), computed)
-    for close in np.split(order, np.flatnonzero(gaps > COUPLING) + 1):
+    for close in close_modes(np.arange(len(computed)), log_f[computed]):
         apart = np.abs(log_f[alone][:, None] - log_f[computed[close]])
         every = np.concatenate([computed[close], alone[(apart < CLOSE).any(axis=1)]])
         if len(every) == 1:
@@ -364,10 +362,24 @@ def _in_order(
 
 def _reordered(best: IntArray, other: IntArray, near: FloatArray) -> bool:
     """Whether a pairing differs by the order of modes that are expected close to each other."""
-    changed = np.flatnonzero(best != other)
-    alike = np.array_equal(np.sort(best[changed]), np.sort(other[changed]))
-    alike &= bool((best[changed] >= 0).all())
-    return alike and bool(np.ptp(np.log(near[changed])) < COUPLING)
+    return all(
+        (best[close] >= 0).all() and set(best[close]) == set(other[close])
+        for close in close_modes(np.flatnonzero(best != other), np.log(near))
+    )
+
+
+def close_modes(numbers: IntArray, log_f: FloatArray) -> list[IntArray]:
+    """Modes part by part, each of modes whose frequencies are close to each other.
+
+    Args:
+        numbers: of modes, int[k].
+        log_f: of all modes [ln Hz], float[modes].
+
+    >>> [part.tolist() for part in close_modes(np.arange(3), np.log([4.0, 9.0, 4.01]))]
+    [[0, 2], [1]]
+    """
+    order = numbers[np.argsort(log_f[numbers], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(log_f[order]) > COUPLING) + 1)
 
 
 def _assigned(cost: FloatArray, unpaired: float) -> IntArray:

@@ -10,8 +10,8 @@ from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.pairing import (
-    COUPLING,
     Expected,
+    close_modes,
     paired,
     parts_of_others,
     unlike_mixed,
@@ -177,10 +177,8 @@ def _left_open(best: IntArray, other: IntArray, near: FloatArray) -> set[int] | 
     Returns:
         Numbers of these modes; None where the pairings differ by more.
     """
-    changed = np.flatnonzero(best != other)
-    changed = changed[np.argsort(near[changed], kind="stable")]
     left_open: set[int] = set()
-    for close in np.split(changed, np.flatnonzero(np.diff(near[changed]) > COUPLING) + 1):
+    for close in close_modes(np.flatnonzero(best != other), near):
         if set(best[close]) != set(other[close]):
             return None
         if (best[close] < 0).any():
