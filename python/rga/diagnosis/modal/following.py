@@ -37,13 +37,11 @@ KINKS = (-1.5, -0.75, 0.0, 0.75, 1.5)
 
 
 def following_hypotheses(
-    trials: ModalTrials[ModalReadings], kinds: int
+    trials: ModalTrials[ModalReadings],
 ) -> tuple[list[Hypothesis], list[Hypothesis]]:
     """Hypotheses of what follows a measured temperature; none where none was.
 
-    Args:
-        trials: of the model.
-        kinds: that could be wrong of it otherwise.
+    Something does: it is one kind, whatever else could be wrong.
 
     Returns:
         That parts of the structure do, and that all of it does.
@@ -55,7 +53,7 @@ def following_hypotheses(
     places, forms = list(kind.places(model)), kind.forms_on_modes()
     count = len(places) * len(forms)
     parts, whole = (
-        [Hypothesis(kind, place, form, count, kinds + 1) for place in some for form in forms]
+        [Hypothesis(kind, place, form, count, 1) for place in some for form in forms]
         for some in (places, [{"group": list(model.groups)}])
     )
     return parts, whole
@@ -74,9 +72,9 @@ def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress)
     """
     likelihood = found.fit.likelihood
     full = len(found.fit.hypotheses) == criteria.naming.most_causes
-    if full or len(likelihood.readings.modes) < MODES_A_CAUSE or not found.first:
+    if full or len(likelihood.readings.modes) < MODES_A_CAUSE:
         return found
-    parts, whole = following_hypotheses(likelihood.trials, found.first[0].hypothesis.kinds)
+    parts, whole = following_hypotheses(likelihood.trials)
     if not parts:
         return found
     usual = max((_at(found.fit, own) for own in OWN), key=_density)
@@ -96,7 +94,7 @@ def with_what_follows(found: ModalFound, criteria: Criteria, progress: Progress)
         return found
     # Modes that follow alike, or bend at the same place, each by its own share, show no part yet.
     alike = [_density(_fitted_beside(usual, *one)) for one in _promising(usual, whole)]
-    if _density(best) - max(*alike, _bending(usual)) < criteria.naming.log_odds:
+    if _density(best) - max(*alike, _bending(usual)) < criteria.rivals.log_odds:
         return found
 
     def beside(one: ModalFit) -> ModalFit:
