@@ -114,7 +114,8 @@ def prospects(
             score -= likelihood.freedom(there)
             options = [ModalProspect(candidate, trial, score, largest)]
             moved = (there.log_f - base.log_f).mean(0)
-            later = steps.best(moved, prior)
+            # What acts at points moves no frequency, though it may pair modes otherwise.
+            later = None if candidate.at_points else steps.best(moved, prior)
             if later is not None:
                 onset, gained = later
                 late = candidate.beginning(onset)
