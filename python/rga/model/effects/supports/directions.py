@@ -1,7 +1,9 @@
 """Directions of supports as places of effects."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
+
+import numpy as np
 
 from rga.model.bending import bending_at
 from rga.model.parameter import Place, listed
@@ -10,6 +12,8 @@ from rga.model.structure import Structure
 from rga.model.structure.arrays import HELD_BY_PLANE
 
 Supports = Annotated[str | list[str], Place("support")]
+MaybeSupports = Annotated[str | list[str] | None, Place("support")]
+MaybeNodes = Annotated[str | list[str] | None, Place("node")]
 Direction = Annotated[Dof, Place("")]
 
 
@@ -41,12 +45,35 @@ def sprung_nodes(model: Model) -> Iterator[dict[str, Any]]:
         )
 
 
+def check_sprung_or_supported(
+    kind: str, support: str | list[str] | None, node: str | list[str] | None, dof: str, model: Model
+) -> None:
+    """ValueError unless one place is given, and springs to the ground hold its nodes."""
+    if (support is None) == (node is None):
+        raise ValueError(f"{kind} needs one place: give 'support' or 'node'")
+    sprung = {(spring.node, spring.dof) for spring in model.springs if spring.to is None}
+    for name in listed(node):
+        if (name, dof) not in sprung:
+            raise ValueError(f"no spring to the ground holds node {name!r} in {dof}")
+
+
+def sprung_stiffness(model: Model, place: Mapping[str, Any]) -> float:
+    """Mean stiffness of the springs to the ground at the nodes of a place [N/m or N m/rad]."""
+    named = listed(place["node"])
+    known = [
+        spring.stiffness
+        for spring in model.springs
+        if spring.node in named and spring.dof == place["dof"] and spring.to is None
+    ]
+    return float(np.mean(known))
+
+
 def turns(dof: str) -> bool:
     """Whether a dof is a rotation."""
     return DOFS.index(dof) >= 3
 
 
-def only_free(model: Model, support: str | list[str], dof: str) -> None:
+def only_free(model: Model, support: str | list[str] | None, dof: str) -> None:
     """ValueError where one of the supports holds the direction."""
     for name in listed(support):
         if dof in model.supports[name].fixed:

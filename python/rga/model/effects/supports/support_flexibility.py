@@ -11,13 +11,17 @@ from rga.model.effects.members.scales import mean_axial_stiffness
 from rga.model.effects.supports.bases import BASE_WORDS, base_stiffness
 from rga.model.effects.supports.directions import (
     Direction,
+    MaybeNodes,
+    MaybeSupports,
+    check_sprung_or_supported,
     directions,
     rotations,
     sprung_nodes,
+    sprung_stiffness,
     supported,
     turns,
 )
-from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
+from rga.model.parameter import Parameter, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Structure
 
@@ -48,18 +52,13 @@ class SupportFlexibility(Effect):
         f"{BEHIND} times its own: judgements; {BASE_WORDS}"
     )
     structural = True
-    support: Annotated[str | list[str] | None, Place("support")] = None
-    node: Annotated[str | list[str] | None, Place("node")] = None
+    support: MaybeSupports = None
+    node: MaybeNodes = None
     dof: Direction
     stiffness: Annotated[Value, Parameter("N/m", float("inf"), least=0.0)] = float("inf")
 
     def check(self, model: Model) -> None:
-        if (self.support is None) == (self.node is None):
-            raise ValueError("support_flexibility needs one place: give 'support' or 'node'")
-        sprung = {(spring.node, spring.dof) for spring in model.springs if spring.to is None}
-        for name in listed(self.node):
-            if (name, self.dof) not in sprung:
-                raise ValueError(f"no spring to the ground holds node {name!r} in {self.dof}")
+        check_sprung_or_supported(self.kind, self.support, self.node, self.dof, model)
         for name in listed(self.support):
             if self.dof not in model.supports[name].fixed:
                 raise ValueError(f"support {name!r} leaves {self.dof} free: name a held direction")
@@ -74,13 +73,7 @@ class SupportFlexibility(Effect):
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         along = ALONG.times(mean_axial_stiffness(model))
         if "node" in place:
-            named = listed(place["node"])
-            known = [
-                spring.stiffness
-                for spring in model.springs
-                if spring.node in named and spring.dof == place["dof"] and spring.to is None
-            ]
-            return {"stiffness": BEHIND.times(float(np.mean(known)))}
+            return {"stiffness": BEHIND.times(sprung_stiffness(model, place))}
         return {"stiffness": base_stiffness(model, place) if turns(place["dof"]) else along}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
