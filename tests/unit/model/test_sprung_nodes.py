@@ -13,7 +13,7 @@ from rga.simulation import Simulator
 SPRING = 2e7
 
 
-def beam(stiffness: float, **effect: Any) -> Model:
+def beam(spring: float, **effect: Any) -> Model:
     """A bar on a spring that is pulled along itself."""
     return read_model(
         {
@@ -27,7 +27,7 @@ def beam(stiffness: float, **effect: Any) -> Model:
             "supports": {
                 "west": {"node": "A", "fixed": ["uz"]}, "east": {"node": "B", "fixed": ["uz"]}
             },
-            "springs": [{"node": "A", "dof": "ux", "stiffness": stiffness}],
+            "springs": [{"node": "A", "dof": "ux", "stiffness": spring}],
             "sensors": {
                 "D": {"kind": "displacement", "unit": "mm", "node": "B", "direction": [1, 0, 0]}
             },
