@@ -110,8 +110,8 @@ def changing_points(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -
     if not told:
         return []
     words = (
-        f"sensors read otherwise within the record: {', '.join(told)}; a cause at a point holds "
-        "for all windows, so look at those before and behind by themselves"
+        "sensors read otherwise within the record, where a cause at a point holds for all windows "
+        f"(look at those before and behind by themselves): {', '.join(told)}"
     )
     return [words]
 
@@ -188,8 +188,8 @@ def lagging(
         return []
     words = (
         f"{', '.join(readings.weather)} of {counted(best, 'window')} before explains as much as "
-        "what begins late: a temperature inside the structure, which lags behind the air, may be "
-        "all of it; give that one"
+        "what begins late: a temperature inside the structure, which lags behind the air, tells "
+        "whether it is all of it"
     )
     return [words]
 
@@ -225,8 +225,8 @@ def following_contexts(likelihood: ModalLikelihood, after: Prediction) -> list[s
         if sizes and sizes[most] > WEATHER:
             words.append(
                 f"frequencies follow {name} by up to {sizes[most]:.1%} over its range ({most}): "
-                "that is taken for the weather and for no cause; a group that follows it is named "
-                "where the model has a temperature"
+                "that is taken for the weather and for no cause; a group that follows it may be "
+                "named where the model has a temperature"
             )
     return words
 

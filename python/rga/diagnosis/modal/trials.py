@@ -44,7 +44,7 @@ REACH = 3.0
 RIGHT = 0.03
 #: modes that are looked at, at most; numbers in the states that are kept, and structures of which
 #: all modes are
-MOST, KEPT, SOLVED = 200, 2**25, 8
+MOST, KEPT, SOLVED = 200, 2**24, 8
 
 AnyWindows = TypeVar("AnyWindows", bound=ModalWindows)
 
