@@ -30,6 +30,8 @@ UNLIKE = 0.25
 SURE = 5.0
 #: length of a window beyond which hardly any is meant [s]
 LONG_WINDOW = 86_400.0
+#: time without a window that is more likely a wrong date [s]
+LONG_GAP = 3 * 365.0 * 86_400.0
 #: windows by which a structure may be behind its weather
 LAGS = 12
 #: change of a frequency that no weather makes
@@ -302,6 +304,15 @@ def odd_entries(model: Model, record: ModalRecord) -> list[str]:
         warnings.append(
             f"windows last up to {short(length)} {unit}: what changes within one shows as its mean "
             "alone; durations are in seconds"
+        )
+    times = np.unique(record.time)
+    gap = float(np.diff(times).max(initial=0.0))
+    if gap > LONG_GAP:
+        length, unit = duration(gap)
+        behind = record.time_label(float(times[int(np.diff(times).argmax()) + 1]))
+        warnings.append(
+            f"nothing was measured for {short(length)} {unit} before {behind}: where that is not "
+            "so, look at the clock"
         )
     for name, column in record.contexts.items():
         low, high = model.context[name].range

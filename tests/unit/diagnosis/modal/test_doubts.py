@@ -52,6 +52,17 @@ def test_what_can_hardly_be_meant_is_told() -> None:
     assert far == "air lies outside its range -20..40 in 2 windows: check its unit and its zero"
 
 
+@pytest.mark.parametrize("years", [2, 20])
+def test_years_without_a_window_are_told(years: int) -> None:
+    model, record = measured(1, Hidden(), windows=10)
+    late = record.windows >= 5
+    apart = replace(record, time=record.time + late * years * 365 * 86_400.0)
+    told = odd_entries(model, apart)
+    assert [one.startswith("nothing was measured for 7300 days") for one in told] == [True] * (
+        years > 3
+    )
+
+
 def test_shapes_of_a_single_point_are_told() -> None:
     model, record = measured(1, Hidden(), windows=5)
     shapes = record.shapes.copy()
