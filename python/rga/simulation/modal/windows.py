@@ -150,7 +150,9 @@ def named_modes(
         either = set().union(*(modes or () for modes in open_names))
         for number, chosen in enumerate(pairing.computed):
             if chosen >= 0:
-                mode[entries[chosen]] = OPEN if number in either else number
+                # Without a shape close modes are one to whoever measured.
+                blind = np.isnan(pairing.mac[number, chosen])
+                mode[entries[chosen]] = number if blind or number not in either else OPEN
                 alike[entries[chosen]] = pairing.mac[number, chosen]
     readings = np.full((windows.max(initial=-1) + 1, len(model.modal_sensors)), np.nan)
     for at, sensor in enumerate(model.modal_sensors.values()):

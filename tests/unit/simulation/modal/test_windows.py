@@ -125,6 +125,9 @@ def test_of_close_modes_one_that_was_found_alone_may_be_either(
     found = named_modes(record, model, close)
     assert found.mode.tolist() == [0, 1, OPEN, 2]
     assert not len(found.doubtful)
+    # Of what was measured without shapes the two are one.
+    blind = replace(record, shapes=np.full_like(record.shapes, np.nan))
+    assert OPEN not in named_modes(blind, model, close).mode
 
 
 def test_a_window_in_which_the_structure_is_another_has_modes_of_its_own(
