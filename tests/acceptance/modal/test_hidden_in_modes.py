@@ -68,6 +68,10 @@ def weak_post() -> Hidden:
     return Hidden(stiffness={"b0n-t1n": 0.5}, onset=ONSET)
 
 
+def lost_lateral() -> Hidden:
+    return Hidden(stiffness={"b0n-b1s": 0.02})
+
+
 @pytest.mark.parametrize("make", [nothing, wrong_clock])
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 12))]
@@ -241,6 +245,17 @@ def test_a_weak_member_is_among_what_cannot_be_told_apart(seed: int) -> None:
     assert any(one.get("member") == "b0n-t1n" for one in near)
     weak = next(one for one in near if one.get("member") == "b0n-t1n")
     np.testing.assert_allclose(weak["factor"]["value"], 0.5, atol=0.1)
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=thorough)])
+def test_a_lateral_that_is_lost_is_among_what_cannot_be_told_apart(seed: int) -> None:
+    """Slopes at usual sizes promise little of what is lost altogether."""
+    first, *others = diagnosed(seed, lost_lateral).causes
+    assert others == []
+    near = [first.effect, *first.rivals]
+    lost = next(one for one in near if one.get("member") == "b0n-b1s")
+    factor = lost["factor"]
+    assert (factor["value"] if isinstance(factor, dict) else factor) < 0.3
 
 
 def test_an_onset_is_told_as_the_record_writes_its_times() -> None:

@@ -11,6 +11,7 @@ from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.schema import Model
+from rga.numerics.robust_spread import robust_spread
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.looks import unclear_looks
 from rga.simulation.modal.pairing import FEWEST, Expected, mac
@@ -28,8 +29,6 @@ REPEATS = 8
 FEW = 0.1
 #: rounds in which shapes, of which each may lack points, are scaled onto their mean
 ROUNDS = 20
-#: median size of a normal variable, in its standard deviations
-NORMAL = 0.6744897501960817
 #: usual sizes beyond which a step is drawn in
 FAR_OUT = 3.0
 #: most that one window says of the next
@@ -358,5 +357,5 @@ def scaled_contexts(contexts: dict[str, FloatArray]) -> Iterator[FloatArray]:
 
 def _variance(steps: FloatArray) -> float:
     """Of steps about zero, the few that are far out drawn in."""
-    usual = float(np.median(np.abs(steps))) / NORMAL
+    usual = robust_spread(steps)
     return float((np.clip(steps, -FAR_OUT * usual, FAR_OUT * usual) ** 2).mean())

@@ -13,6 +13,7 @@ from scipy.linalg import lstsq
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.numerics.decompositions import thin_svd
+from rga.numerics.robust_spread import robust_spread
 
 #: a step: a jump from one row to the next of so many robust deviations of such jumps, by which the
 #: median of so many rows before and after differs too
@@ -110,7 +111,7 @@ def _jump(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None
     for rows, sensor, basis in bases:
         column, rest = _with_whole_step(left[rows, sensor], basis)
         jumps = np.abs(np.diff(column))
-        scale = 1.4826 * float(np.median(np.abs(np.diff(rest)))) if len(jumps) else 0.0
+        scale = robust_spread(np.diff(rest))
         for place in np.flatnonzero(jumps > JUMP * scale) + 1 if scale > 0 else ():
             if not BESIDE <= place <= len(column) - BESIDE:
                 continue

@@ -7,6 +7,7 @@ import numpy as np
 
 from rga.checking.finding import Finding, named
 from rga.model import Model
+from rga.numerics.robust_spread import robust_spread
 from rga.operation.configuration import TwinSettings
 from rga.operation.disk.forecast import MAKE_ROOM, YearlyGrowth, yearly_growth
 from rga.operation.disk.room import DiskRoom
@@ -22,8 +23,6 @@ from rga.quantities import bytes_in_words
 ENOUGH = 20
 #: part of the noise of a model below which rows are quieter than it says
 QUIETER = 0.5
-#: median of the absolute value of the difference of two rows, in standard deviations of one
-_MEDIAN = 0.6745 * 2**0.5
 
 
 def calibration_findings(
@@ -59,11 +58,11 @@ def noise_findings(
     rows = np.array([one.mean for one in cells]).reshape(len(cells), len(model.sensors))
     quiet = []
     for (name, sensor), values in zip(model.sensors.items(), rows.T, strict=True):
-        steps = np.abs(np.diff(values[~np.isnan(values)]))
+        steps = np.diff(values[~np.isnan(values)])
         if sensor.noise is None or len(steps) < ENOUGH:
             continue
         # A sensor that stands still shows no noise.
-        if 0 < np.median(steps) / _MEDIAN < QUIETER * sensor.noise:
+        if 0 < robust_spread(steps) / 2**0.5 < QUIETER * sensor.noise:
             quiet.append(name)
     if quiet:
         what = f"rows scatter less than half as much as the model's noise at {named(quiet)}"

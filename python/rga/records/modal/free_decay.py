@@ -14,6 +14,7 @@ from scipy import signal, stats
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.errors import InputError
+from rga.numerics.robust_spread import robust_spread
 from rga.records.modal.poles import alike_poles
 from rga.records.modal.read import as_real
 
@@ -34,8 +35,6 @@ PERIODS, MOST_DAMPING = 4, 0.1
 ABOUT = 0.3
 #: of noise alone that anything stands out of it
 CHANCE = 1e-3
-#: standard deviations of a normal variable that its median size is
-NORMAL = 1.4826
 
 
 @dataclass(frozen=True)
@@ -198,7 +197,7 @@ class _Poles:
         shape = shape * sizes
         return DecayingMode(
             frequency=middle,
-            scatter=NORMAL * float(np.median(np.abs(frequency - middle))),
+            scatter=robust_spread(frequency - middle),
             damping=float(np.median(-self.rate[own].real / np.abs(self.rate[own]))),
             shape=shape / shape[np.argmax(np.abs(shape))],
             realness=float(realness),

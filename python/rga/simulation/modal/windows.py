@@ -8,6 +8,7 @@ import polars as pl
 
 from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
+from rga.numerics.robust_spread import robust_spread
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.pairing import (
     Expected,
@@ -23,8 +24,6 @@ from rga.simulation.modal.wrong_points import unlike_but_for_points
 MOST_COST = 8.0
 #: number of an entry that is none of the expected modes, and of one that may be either of two
 NONE, OPEN = -1, -2
-#: median size of the difference of two normal variables, in their standard deviation
-MEDIAN_STEP = 0.6744897501960817 * np.sqrt(2)
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ def summary(
                 "found": own.sum() / len(named.time),
                 "f": middle,
                 "scatter": (
-                    100 * float(np.median(np.abs(steps))) / MEDIAN_STEP / middle
+                    100 * robust_spread(steps) / 2**0.5 / middle
                     if middle is not None and len(steps)
                     else None
                 ),

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.numerics.robust_spread import robust_spread
 
 
 def noise_of(
@@ -24,7 +25,7 @@ def noise_of(
     found = np.full(len(stated), np.nan)
     for column, known in enumerate(stated):
         own = steps[np.isfinite(steps[:, column]), column]
-        rough = 1.4826 * float(np.median(own)) / np.sqrt(2) if len(own) else 0.0
+        rough = robust_spread(own) / 2**0.5
         if (known or rough) and not stuck[column]:
             found[column] = known or rough
     return found

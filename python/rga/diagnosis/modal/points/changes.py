@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
+from rga.numerics.robust_spread import robust_spread
 
 #: windows on either side of a change, standard deviations from which on it is no chance, and about
 #: how many moments are tried
 EITHER, SURE, SPLITS = 5, 6.0, 100
-#: median size of a normal variable, in its standard deviations
-NORMAL = 0.6744897501960817
 #: change of what a sensor reads that is worth telling, as a share of it; and points for each that
 #: changes: where more do, it is the structure's doing
 LEAST, TIMES = 0.25, 3.0
@@ -61,8 +60,8 @@ def point_changes(
             continue
         own = course[seen]
         at, before, after = _split(own)
-        off = np.abs(own - np.where(np.arange(len(own)) < at, before, after))
-        spread = max(float(np.median(off)) / NORMAL, 1e-12)
+        off = own - np.where(np.arange(len(own)) < at, before, after)
+        spread = max(robust_spread(off), 1e-12)
         error = spread * np.sqrt(np.pi / 2 * (1.0 / at + 1.0 / (len(own) - at)))
         sure = abs(after - before) / error
         sizes.append(abs(after - before) / max(abs(before), abs(after), 1e-12))

@@ -11,6 +11,7 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
 from rga.model.schema import Model
+from rga.numerics.robust_spread import robust_spread
 
 #: robust deviations at which a reading is drawn in before it predicts other channels
 DRAWN_IN = 4.0
@@ -129,7 +130,7 @@ def robust_fit(column: FloatArray, basis: FloatArray) -> FloatArray:
 
 def robust_deviation(values: FloatArray) -> float:
     """Standard deviation by the median of the absolute deviations."""
-    return float(1.4826 * np.median(np.abs(values - np.median(values)))) if len(values) else 0.0
+    return robust_spread(values - np.median(values)) if len(values) else 0.0
 
 
 def root_mean_square(columns: FloatArray) -> FloatArray:

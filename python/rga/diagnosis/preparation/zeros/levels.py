@@ -14,6 +14,7 @@ from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.signatures import signatures
 from rga.model.schema import Model
 from rga.numerics.decompositions import thin_svd
+from rga.numerics.robust_spread import robust_spread
 from rga.simulation import Simulator
 
 #: rows that what causes change is worked out in: all of their constants are known by fewer
@@ -138,9 +139,9 @@ class Compared:
 
 def noise_by_steps(residual: FloatArray) -> FloatArray:
     """Robust deviation of each channel's noise, by what changes from row to row, float[sensors]."""
-    steps = np.abs(np.diff(residual, axis=0))
-    typical = [np.median(one[np.isfinite(one)]) if np.isfinite(one).any() else 0 for one in steps.T]
-    return np.asarray(1.4826 / np.sqrt(2) * np.array(typical, dtype=float))
+    steps = np.diff(residual, axis=0)
+    typical = [robust_spread(one[np.isfinite(one)]) for one in steps.T]
+    return np.asarray(np.array(typical, dtype=float) / np.sqrt(2))
 
 
 def moving_means(values: FloatArray, width: int) -> FloatArray:
