@@ -35,7 +35,7 @@ def fit_at(factor: float, onset: float | None = None) -> tuple[ModalLikelihood, 
 def test_a_cause_that_moves_no_mode_is_told(factor: float, moves: bool) -> None:
     told = moving_nothing(*fit_at(factor))
     assert [
-        one.startswith("member stiffness bottom bracing moves no frequency by more than 0.")
+        one.startswith("member stiffness, bottom bracing moves no frequency by more than 0.")
         for one in told
     ] == [True] * (not moves)
 
