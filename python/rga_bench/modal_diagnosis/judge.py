@@ -146,9 +146,12 @@ def _permitted(case: ModalCase, cause: Cause) -> bool:
     """Whether a cause is true of the case though it is not hidden.
 
     Stiff joints of a welded reality, what rolling mills put there, and what moves all frequencies
-    alike where masses and moduli as they are do so.
+    alike where masses and moduli as they are do so: as what is hidden is found, as the cause itself
+    or among at most three rivals.
     """
-    if PermittedCauses.of(case).has(cause.effect):
+    permitted = PermittedCauses.of(case)
+    near = cause.rivals if len(cause.rivals) <= FEW_RIVALS else []
+    if any(permitted.has(one) for one in (cause.effect, *near)):
         return True
     common = float(case.truth["common"])
     if abs(common) < OFF_TOGETHER or cause.onset is not None:

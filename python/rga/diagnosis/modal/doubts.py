@@ -281,6 +281,12 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
             f"left out: {counted(readings.unsure, 'window')} in which another pairing of the modes "
             f"found is nearly as probable ({', '.join(readings.in_doubt)})"
         )
+    if readings.far_out:
+        entries = "entry" if readings.far_out == 1 else "entries"
+        warnings.append(
+            f"left out: {readings.far_out} {entries} with the shape of a mode and a frequency far "
+            "off those of that mode in the windows about it"
+        )
     if readings.record.left_out:
         warnings.append(f"columns that are not used: {', '.join(readings.record.left_out)}")
     if readings.unnamed:

@@ -14,7 +14,8 @@ from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings, scaled_contexts
 from rga.diagnosis.modal.trials import ModalTrials
-from rga.simulation.modal.pairing import SHAPE_ERROR, apart, freedom_of_parts, without_parts
+from rga.simulation.modal.expected import SHAPE_ERROR
+from rga.simulation.modal.mixed_shapes import apart, freedom_of_parts, without_parts
 
 #: error that a model makes of what a cause changes of a frequency, as a share of the change:
 #: members as built and joints that it idealises leave about as much

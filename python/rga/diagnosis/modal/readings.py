@@ -11,10 +11,11 @@ from rga.diagnosis.modal.standing import weather
 from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.schema import Model
+from rga.numerics.lone_values import lone_values
 from rga.numerics.robust_spread import robust_spread
 from rga.records.modal.record import ModalRecord
+from rga.simulation.modal.expected import FEWEST, Expected, mac
 from rga.simulation.modal.looks import unclear_looks
-from rga.simulation.modal.pairing import FEWEST, Expected, mac
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
 from rga.simulation.modal.windows import NONE, NamedModes, named_modes
@@ -29,6 +30,8 @@ REPEATS = 8
 FEW = 0.1
 #: rounds in which shapes, of which each may lack points, are scaled onto their mean
 ROUNDS = 20
+#: share of its frequency by which a mode may always differ from one window to the next
+LONE = 0.02
 #: usual sizes beyond which a step is drawn in
 FAR_OUT = 3.0
 #: most that one window says of the next
@@ -71,6 +74,7 @@ class ModalReadings(ModalWindows):
         unsure: such windows that are left out, where they are few.
         in_doubt: modes that may be others in such windows.
         unnamed: entries of the record that are none of the modes.
+        far_out: that are left out, as their frequency is far off that of the mode about then.
         unlike: of expected modes, share of the windows in which they were not found and something
             else swings about where they are expected.
         uncovered: windows left out, as a context is not known then.
@@ -90,6 +94,7 @@ class ModalReadings(ModalWindows):
     unsure: int
     in_doubt: tuple[str, ...]
     unnamed: int
+    far_out: int
     unlike: dict[str, float]
     uncovered: int
     unclear: tuple[str, ...]
@@ -128,7 +133,11 @@ class ModalReadings(ModalWindows):
         check_units(named, record, expected, model)
         few = len(named.doubtful) <= FEW * len(named.time)
         unsure = np.isin(record.windows, named.doubtful) & few
-        mode = np.where(unsure, -1, named.mode)
+        mode = np.where(unsure, NONE, named.mode)
+        driving = weather(model, record.contexts)
+        standing = [column for name, column in record.contexts.items() if name not in driving]
+        far_out = _far_out(record, mode, standing)
+        mode = np.where(far_out, NONE, mode)
         names = [name for k, name in enumerate(expected) if (mode == k).any()]
         if not names:
             raise InputError(
@@ -179,6 +188,7 @@ class ModalReadings(ModalWindows):
             unsure=len(np.unique(record.windows[unsure])),
             in_doubt=named.in_doubt,
             unnamed=int((named.mode == NONE).sum()),
+            far_out=int(far_out.sum()),
             unlike=_unlike_modes(named, record, expected),
             uncovered=uncovered,
             unclear=unclear_looks(expected),
@@ -353,6 +363,26 @@ def scaled_contexts(contexts: dict[str, FloatArray]) -> Iterator[FloatArray]:
             continue
         filled = np.where(seen, column, column[seen].mean())
         yield (filled - column[seen].min()) / np.ptp(column[seen])
+
+
+def _far_out(record: ModalRecord, mode: IntArray, standing: Sequence[FloatArray]) -> BoolArray:
+    """Entries whose frequency lies far off that of the same mode about then, bool[entries].
+
+    No structure changes for a window or two: they are another mode, or were found wrongly.
+
+    Args:
+        record: with its entries.
+        mode: number of the mode of each, int[entries]; negative: none.
+        standing: contexts that say what loads stand there, float[entries] each. Windows in which
+            others stand are held apart.
+    """
+    far = np.zeros(len(record), dtype=bool)
+    state = np.unique(np.column_stack([mode, *standing]), axis=0, return_inverse=True)[1].ravel()
+    order = np.argsort(record.time, kind="stable")
+    for one in np.unique(state[mode >= 0]):
+        own = order[state[order] == one]
+        far[own] = lone_values(np.log(record.frequency[own]), LONE)
+    return far
 
 
 def _variance(steps: FloatArray) -> float:

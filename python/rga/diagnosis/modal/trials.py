@@ -21,17 +21,9 @@ from rga.model.effect import Effect, Values
 from rga.model.effects.members.stiffness_temperature import contexts_of_temperature
 from rga.model.schema import Model
 from rga.model.structure import Structure
-from rga.simulation.modal.pairing import (
-    DOUBTFUL,
-    Expected,
-    Pairing,
-    couplings,
-    mac,
-    mixture,
-    paired,
-    parts_of_others,
-    unlike_computed,
-)
+from rga.simulation.modal.expected import Expected, mac
+from rga.simulation.modal.mixed_shapes import couplings, parts_of_others, unlike_computed
+from rga.simulation.modal.pairing import DOUBTFUL, Pairing, mixture, paired
 from rga.simulation.modal.points import motion_at
 from rga.simulation.modal.structures import ModalStructures
 from rga.simulation.paths.response import refused
@@ -275,8 +267,8 @@ class ModalTrials(Generic[AnyWindows]):
 
     def _paired(self, solved: Computed, recorded: FloatArray) -> Prediction:
         looks, log_f = self.readings.looks, solved.log_f
-        unlike = unlike_computed(looks, couplings(log_f), recorded)
-        pairing = paired(looks, np.exp(log_f), recorded, unlike=unlike)
+        unlike, freedom = unlike_computed(looks, couplings(log_f), recorded)
+        pairing = paired(looks, np.exp(log_f), recorded, unlike=unlike, freedom=freedom)
         if (pairing.computed < 0).any():
             lacking = self.readings.modes[int(np.argmin(pairing.computed))]
             raise InputError(

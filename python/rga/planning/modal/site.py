@@ -25,7 +25,8 @@ from rga.model import Model
 from rga.model.effect import Effect, Values, when_all_act
 from rga.model.schema import ContextVariable
 from rga.planning.modal.candidates import MORE_WINDOWS, PARKED_MASS, PARKED_WINDOWS, SEASON
-from rga.simulation.modal.pairing import SHAPE_ERROR, Expected, couplings
+from rga.simulation.modal.expected import SHAPE_ERROR, Expected
+from rga.simulation.modal.mixed_shapes import couplings
 
 #: error of what a test says nothing of, where all predict the same
 SILENT = 1.0

@@ -5,7 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
-from rga.simulation.modal.pairing import COUPLING, FEWEST, SHAPE_ERROR, Expected, mac
+from rga.simulation.modal.expected import FEWEST, SHAPE_ERROR, Expected, mac
+from rga.simulation.modal.mixed_shapes import COUPLING
 
 
 def unseen_modes(expected: Mapping[str, Expected]) -> list[str]:

@@ -14,7 +14,8 @@ from rga.model.readings import Readings
 from rga.model.schema import ExpectedMode, Model
 from rga.model.structure import Structure
 from rga.simulation.contexts import Contexts
-from rga.simulation.modal.pairing import Expected, Pairing, paired, turned
+from rga.simulation.modal.expected import Expected
+from rga.simulation.modal.pairing import Pairing, paired, turned
 from rga.simulation.modal.points import motion_at
 from rga.simulation.modal.structures import ModalStructures, computed_modes
 

@@ -8,7 +8,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected, mac
+from rga.simulation.modal.expected import Expected, mac
 from rga.simulation.modal.windows import NamedModes
 
 #: what stands for Hz by mistake, over what it would be in Hz

@@ -10,13 +10,9 @@ from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 from rga.numerics.robust_spread import robust_spread
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import (
-    Expected,
-    close_modes,
-    paired,
-    parts_of_others,
-    unlike_mixed,
-)
+from rga.simulation.modal.expected import Expected
+from rga.simulation.modal.mixed_shapes import parts_of_others, unlike_mixed
+from rga.simulation.modal.pairing import close_modes, paired
 from rga.simulation.modal.wrong_points import unlike_but_for_points
 
 #: cost of a pair beyond which an entry is none of the expected modes: four standard deviations in

@@ -3,7 +3,8 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.simulation.modal.pairing import SHAPE_ERROR, Expected, unlike_mixed
+from rga.simulation.modal.expected import SHAPE_ERROR, Expected
+from rga.simulation.modal.mixed_shapes import unlike_mixed
 
 #: points that may be wrong, and how many must measure for each of them
 WRONG, FOR_EACH = 2, 5

@@ -19,7 +19,7 @@ from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials
 from rga.model.effects.members.elastic_modulus import ElasticModulus
-from rga.simulation.modal.pairing import apart
+from rga.simulation.modal.mixed_shapes import apart
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from independent.modal_bridge import MISSING, NOISE, Hidden, measured
+from independent.modal_bridge import MISSING, NOISE, Hidden, Parked, measured
 from rga.diagnosis.modal.readings import ModalReadings, mean_shape
 from rga.errors import InputError
 from rga.model import read_effect
@@ -110,3 +110,35 @@ def test_a_record_of_other_modes_is_refused() -> None:
     )
     with pytest.raises(InputError, match="none of the modes that the model expects"):
         ModalReadings.of(other, record)
+
+
+def test_two_modes_that_have_each_others_shape_in_one_window_are_left_out_there() -> None:
+    model, record = measured(1, Hidden(), windows=30)
+    there = np.flatnonzero(record.windows == 12)
+    frequency = record.frequency.copy()
+    one, other = there[np.argsort(frequency[there])][:2]
+    frequency[[one, other]] = frequency[[other, one]]
+    sound, odd = (
+        ModalReadings.of(model, each) for each in (record, replace(record, frequency=frequency))
+    )
+    assert (sound.far_out, odd.far_out) == (0, 2)
+    assert (odd.entries[[one, other]] < 0).all()
+    left = np.delete(np.arange(len(record)), [one, other])
+    np.testing.assert_array_equal(odd.entries[left], sound.entries[left])
+
+
+@pytest.mark.parametrize(("windows", "left_out"), [(1, True), (2, True), (4, False), (15, False)])
+def test_what_lasts_is_a_state_of_the_structure(windows: int, left_out: bool) -> None:
+    model, record = measured(1, Hidden(), windows=40)
+    there = (record.windows >= 12) & (record.windows < 12 + windows)
+    state = replace(record, frequency=np.where(there, 0.9, 1.0) * record.frequency)
+    readings = ModalReadings.of(model, state)
+    assert readings.far_out == (there.sum() if left_out else 0)
+
+
+def test_a_truck_that_stands_there_for_one_window_is_a_state_too() -> None:
+    model, record = measured(1, Hidden(), windows=40, parked=Parked({"b3n": 6000.0}, (12, 13)))
+    there = record.windows == 12
+    readings = ModalReadings.of(model, record)
+    assert (readings.entries[there] >= 0).sum() > 2
+    assert readings.far_out == 0

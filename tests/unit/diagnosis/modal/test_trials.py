@@ -12,7 +12,7 @@ from rga.model.effects.masses.added_mass import AddedMass
 from rga.model.effects.members.elastic_modulus import ElasticModulus
 from rga.model.effects.sensors.clock_rate import ClockRate
 from rga.model.parameter import Estimated
-from rga.simulation.modal.pairing import Expected
+from rga.simulation.modal.expected import Expected
 
 WINDOWS = 12
 MODEL, RECORD = measured(3, Hidden(), modes=4, windows=WINDOWS)

@@ -3,16 +3,16 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.simulation.modal.pairing import (
-    Expected,
+from rga.simulation.modal.expected import SHAPE_ERROR, Expected
+from rga.simulation.modal.mixed_shapes import (
+    apart,
     couplings,
-    mixture,
-    paired,
+    freedom_of_parts,
     parts_of_others,
-    turned,
     unlike_computed,
     unlike_mixed,
 )
+from rga.simulation.modal.pairing import mixture, paired, turned
 from rga.simulation.modal.points import motion_at
 
 POINTS = 12
@@ -129,7 +129,7 @@ def test_mixtures_of_all_computed_modes_at_once_are_those_of_one_after_the_other
         Expected(9.0, 0.1, some, measured[0, some]),
         Expected(9.0, 0.1, some[:0], measured[0, :0]),
     ]
-    at_once = unlike_computed(looks, couplings(log_f), shapes)
+    at_once, freedom = unlike_computed(looks, couplings(log_f), shapes)
     for look, found in zip(looks[:3], at_once, strict=False):
         at = shapes[:, look.at]
         one_by_one = [
@@ -137,7 +137,16 @@ def test_mixtures_of_all_computed_modes_at_once_are_those_of_one_after_the_other
             for number, own in enumerate(at)
         ]
         np.testing.assert_allclose(found, one_by_one, rtol=1e-12)
+    for look, found in zip(looks[:3], freedom, strict=False):
+        at = shapes[:, look.at]
+        spread = float(np.sqrt(0.5 * SHAPE_ERROR))
+        one_by_one = []
+        for number, own in enumerate(at):
+            _, parts = apart(own / np.linalg.norm(own), own, parts_of_others(log_f, at, number))
+            one_by_one.append(freedom_of_parts(parts, spread))
+        np.testing.assert_allclose(found, one_by_one, rtol=1e-9, atol=1e-12)
     assert np.isnan(at_once[3]).all()
+    assert not freedom[3].any()
     shape = measured[0]
     alone = 1.0 - (shape @ shapes[0]) ** 2 / (shape @ shape) / (shapes[0] @ shapes[0])
     assert at_once[0, 0] < alone
@@ -154,7 +163,7 @@ def test_a_mode_that_leaves_the_points_still_is_none_that_moves_them() -> None:
         found = paired(modes, np.array([4.0, 4.1]), shapes)
         assert found.computed.tolist() == [0 if order[0] is up else 1]
         assert sorted(found.mac[0].round(9)) == [0.0, 1.0]
-        unlike = unlike_computed(modes, np.zeros((2, 2)), shapes)
+        unlike, _ = unlike_computed(modes, np.zeros((2, 2)), shapes)
         assert sorted(unlike[0].round(9)) == [0.0, 1.0]
 
 
@@ -165,12 +174,26 @@ def test_a_mode_that_moves_no_point_is_like_nothing_and_breaks_nothing() -> None
     with np.errstate(all="raise", under="ignore"):
         parts = parts_of_others(log_f, shapes, 0)
         unlike = unlike_mixed(np.array([0.3, 0.9]), shapes[0], parts)
-        table = unlike_computed(
+        table, freedom = unlike_computed(
             [Expected(2.0, 0.1, np.arange(2), np.array([0.3, 0.9]))], couplings(log_f), shapes
         )
     assert np.isfinite(parts).all()
     assert 0.0 <= unlike <= 1.0
     assert np.isfinite(table).all()
+    assert np.isfinite(freedom).all()
+
+
+def test_what_hardly_moves_the_points_is_none_that_moves_them() -> None:
+    """A brace that swings by itself looks at the points as what is in it of other modes."""
+    shapes = waves(3)
+    brace = 1e-3 * np.random.default_rng(0).normal(size=(2, POINTS))
+    computed, log_f = np.concatenate([shapes, brace]), np.log([4.0, 9.0, 16.0, 9.3, 9.31])
+    modes = expected(shapes, [4.0, 9.2, 16.0])
+    unlike, freedom = unlike_computed(modes, couplings(log_f), computed)
+    assert unlike[1, 3] < 0.01
+    assert freedom[1, 3] > 5.0 > 5 * freedom[1, 1]
+    found = paired(modes, np.exp(log_f), computed, unlike=unlike, freedom=freedom)
+    assert found.computed.tolist() == [0, 1, 2]
 
 
 def test_by_a_single_point_all_modes_look_alike() -> None:
@@ -178,7 +201,7 @@ def test_by_a_single_point_all_modes_look_alike() -> None:
     shapes, log_f = waves(3), np.log([4.0, 4.001, 9.0])
     at = np.array([5])
     modes = [Expected(near, 0.15, at, shapes[k, at]) for k, near in enumerate((4.0, 9.0))]
-    assert np.isnan(unlike_computed(modes, couplings(log_f), shapes)).all()
+    assert np.isnan(unlike_computed(modes, couplings(log_f), shapes)[0]).all()
     assert np.isnan(unlike_mixed(shapes[0, at], shapes[1, at], np.zeros((0, 1))))
     assert np.isnan(paired(modes, np.exp(log_f), shapes).mac).all()
 

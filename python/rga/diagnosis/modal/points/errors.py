@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
-from rga.simulation.modal.pairing import STILL, Expected
+from rga.simulation.modal.expected import Expected
+from rga.simulation.modal.mixed_shapes import STILL
 
 #: share by which a stiffness may be off anywhere: a perturbation mixes modes by it over twice the
 #: distance of their frequencies (Fox and Kapoor, AIAA Journal 6, 1968), and at most at will

@@ -11,7 +11,7 @@ from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.records.modal.record import ModalRecord
-from rga.simulation.modal.pairing import Expected
+from rga.simulation.modal.expected import Expected
 
 
 def changes_shapes(effect: Effect) -> bool:

@@ -30,9 +30,14 @@ class RigidEndZone(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        for group, names in model.groups.items():
-            if any(model.members[name].kind == "frame" for name in names):
-                yield {"group": group}
+        framed = [
+            group
+            for group, names in model.groups.items()
+            if any(model.members[name].kind == "frame" for name in names)
+        ]
+        yield from ({"group": group} for group in framed)
+        if len(framed) > 1:
+            yield {"group": framed}
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:

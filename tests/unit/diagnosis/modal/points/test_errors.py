@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rga.diagnosis.modal.points.errors import FREE, LEAST, TIMES, WRONG, PointErrors, mixing
-from rga.simulation.modal.pairing import Expected
+from rga.simulation.modal.expected import Expected
 
 POINTS, COMPUTED = 12, 5
 LOG_F = np.log([2.0, 3.0, 4.5, 7.0, 9.0])
