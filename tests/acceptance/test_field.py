@@ -297,6 +297,14 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert known.has({"kind": "sensor_swap", "sensors": ["S2", "S1"]})
     assert not known.has({"kind": "sensor_bias", "sensor": "S2"})
     assert not PermittedCauses().has({"kind": "sensor_bias", "sensor": "S1"})
+    beside = PermittedCauses(
+        gauges={"S1": [0.5, -0.012, 0.251]}, model={"sensors": {"S1": {"z": 0.25}}}
+    )
+    position = {"kind": "gauge_position", "sensor": "S1", "y": {"value": -0.01}, "z": 0.008}
+    assert beside.has(position)
+    assert not beside.has({**position, "y": 0.01})
+    assert not beside.has({**position, "sensor": "S2"})
+    assert not known.has(position)
 
 
 @pytest.mark.parametrize(

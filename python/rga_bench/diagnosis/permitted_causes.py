@@ -1,6 +1,6 @@
 """What is true of a case though it is not hidden: named or not, it is no mistake."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,12 +28,14 @@ class PermittedCauses:
         kinds: of the true state of a frame that is modelled as a truss.
         broken: the channel that is broken, if there is one.
         stiffness: of every member over the model's, where rollings differ [-].
+        gauges: where each stands: a share of the length of its member, y and z [m].
         model: of the case, as a dict.
     """
 
     kinds: tuple[str, ...] = ()
     broken: str | None = None
     stiffness: Mapping[str, float] = field(default_factory=dict)
+    gauges: Mapping[str, Sequence[float]] = field(default_factory=dict)
     model: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -46,12 +48,18 @@ class PermittedCauses:
             kinds=WELDED if case.truth["reality"] == "frame" else (),
             broken=broken["sensor"] if broken else None,
             stiffness=case.truth["stiffness"],
+            gauges=case.truth["gauges"],
             model=case.model,
         )
 
     def has(self, effect: Mapping[str, Any]) -> bool:
         """Whether an effect is one of these."""
-        return effect["kind"] in self.kinds or self._on_broken(effect) or self._of_batch(effect)
+        return (
+            effect["kind"] in self.kinds
+            or self._on_broken(effect)
+            or self._of_batch(effect)
+            or self._of_gauge(effect)
+        )
 
     def broken_reported(self, findings: Findings) -> bool | None:
         """Whether the broken channel is a cause or a rival; None: there is none."""
@@ -86,10 +94,24 @@ class PermittedCauses:
         if not several or effect.get("onset") is not None:
             return False
         true = float(np.exp(np.mean([np.log(self.stiffness[name]) for name in several])) - 1.0)
-        factor = effect["factor"]
-        off = float(factor["value"] if isinstance(factor, Mapping) else factor) - 1.0
+        off = _estimated(effect["factor"]) - 1.0
         return abs(true) > OFF and abs(off - true) < NEAR * abs(true)
+
+    def _of_gauge(self, effect: Mapping[str, Any]) -> bool:
+        """A gauge that stands beside its place in the model, about as far as it is said to."""
+        sensor = effect.get("sensor")
+        if effect["kind"] != "gauge_position" or sensor not in self.gauges:
+            return False
+        stated = self.model["sensors"][sensor]
+        true = np.array(self.gauges[sensor][1:]) - [stated.get("y", 0.0), stated.get("z", 0.0)]
+        told = np.array([_estimated(effect.get(axis, 0.0)) for axis in "yz"])
+        farthest = int(np.abs(true).argmax())
+        return bool(abs(told - true)[farthest] < NEAR * abs(true[farthest]))
 
 
 def _listed(place: Any) -> tuple[str, ...]:
     return (place,) if isinstance(place, str) else tuple(place)
+
+
+def _estimated(value: Any) -> float:
+    return float(value["value"] if isinstance(value, Mapping) else value)
