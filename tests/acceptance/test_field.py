@@ -304,7 +304,7 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert beside.has(position)
     assert not beside.has({**position, "y": 0.01})
     assert not beside.has({**position, "sensor": "S2"})
-    assert not known.has(position)
+    assert not PermittedCauses().has(position)
 
 
 @pytest.mark.parametrize(

@@ -28,15 +28,15 @@ class PermittedCauses:
         kinds: of the true state of a frame that is modelled as a truss.
         broken: the channel that is broken, if there is one.
         stiffness: of every member over the model's, where rollings differ [-].
-        gauges: where each stands: a share of the length of its member, y and z [m].
         model: of the case, as a dict.
+        gauges: where each stands: a share of the length of its member, y and z [m].
     """
 
     kinds: tuple[str, ...] = ()
     broken: str | None = None
     stiffness: Mapping[str, float] = field(default_factory=dict)
-    gauges: Mapping[str, Sequence[float]] = field(default_factory=dict)
     model: Mapping[str, Any] = field(default_factory=dict)
+    gauges: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, case: Case) -> "PermittedCauses":
@@ -48,8 +48,8 @@ class PermittedCauses:
             kinds=WELDED if case.truth["reality"] == "frame" else (),
             broken=broken["sensor"] if broken else None,
             stiffness=case.truth["stiffness"],
-            gauges=case.truth["gauges"],
             model=case.model,
+            gauges=case.truth["gauges"],
         )
 
     def has(self, effect: Mapping[str, Any]) -> bool:

@@ -10,7 +10,8 @@ from rga.model.parameter import Factor, Parameter, Place, Prior, Value, listed
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
-USUAL = Factor(0.04)
+#: of a density; and of a mass on nodes, which may be another layer or engine altogether
+USUAL, ON_NODES = Factor(0.04), Factor(0.04, tail=0.5)
 
 
 class MassFactor(Effect):
@@ -27,7 +28,7 @@ class MassFactor(Effect):
     )
     usual = (
         f"factor {USUAL}: the weight of concrete has a coefficient of variation of 4 % (JCSS "
-        "Probabilistic Model Code, 2.1)"
+        "Probabilistic Model Code, 2.1); of a mass on nodes with a long tail, a judgement"
     )
     structural = True
     on_modes = True
@@ -51,7 +52,7 @@ class MassFactor(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"factor": USUAL}
+        return {"factor": ON_NODES if "mass" in place else USUAL}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         stated = structure.once_for_geometry(
