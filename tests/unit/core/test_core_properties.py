@@ -146,6 +146,31 @@ def test_a_rigid_motion_strains_nothing(case: Case) -> None:
 
 
 @laws
+@given(cases())
+def test_growing_all_over_strains_nothing(case: Case) -> None:
+    """A structure that is warmed all over, gussets too, and whose supports move as it does."""
+    structure = {**case.structure, "spring_stiffness": 0 * case.structure["spring_stiffness"]}
+    moved = STRAIN * structure["coordinates"]
+    grown = np.concatenate([moved, np.zeros_like(moved)], axis=1)
+    normals = structure["inclined_direction"]
+    normals = normals / np.linalg.norm(normals, axis=1)[:, None]
+    inclined = (normals * moved[structure["inclined_node"]]).sum(axis=1)
+    strain = np.zeros((1, case.members, 3))
+    strain[..., 0] = STRAIN
+    case = only(
+        replace(case, structure=structure),
+        strain=strain,
+        prescribed=(grown * structure["fixed"])[None],
+        prescribed_inclined=inclined[None],
+    )
+    answer = case.solve()
+    stiffness = float((structure["E"] * structure["A"]).max())
+    same(answer.motions[:, :3], moved)
+    for forces in (answer.reactions, answer.end_forces):
+        same(forces, np.zeros_like(forces), size=stiffness * STRAIN)
+
+
+@laws
 @given(cases(), st.tuples(*[st.floats(-np.pi, np.pi)] * 3))
 def test_turning_all_turns_the_answer(case: Case, angles: tuple[float, float, float]) -> None:
     turn: Floats = Rotation.from_euler("xyz", angles).as_matrix()

@@ -16,6 +16,7 @@ from rga.diagnosis.modal.trials import ModalTrials
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses_of
 from rga.model.effect import Effect
 from rga.model.parameter import Factor, Prior
+from rga.simulation.modal.pairing import close_modes
 
 #: places of a kind at one member or node that are simulated: by what they would explain, and by
 #: how much they move
@@ -263,7 +264,8 @@ def _worth_simulating(
     """Which candidates are simulated: of the places of a kind at one member or node, some.
 
     Slopes, which cost nothing, rank them: those that would explain most of what is left, and those
-    that move most. Between kinds, and for groups, they decide nothing.
+    that move most. Between kinds, and for groups, they decide nothing. Close modes are any mixture,
+    and have slopes of their own together alone: by these they are ranked as well.
     """
     trials = likelihood.trials
     strain, kinetic = trials.energies()
@@ -271,6 +273,11 @@ def _worth_simulating(
     members = {name: number for number, name in enumerate(model.members)}
     nodes = {name: len(members) + number for number, name in enumerate(model.nodes)}
     at_once = likelihood.of_steady(np.eye(len(likelihood.readings.modes)))
+    modes = np.arange(len(likelihood.readings.modes))
+    alike = np.eye(len(modes))
+    for close in close_modes(modes, np.log([look.near for look in likelihood.readings.looks])):
+        alike[np.ix_(close, close)] = 1.0 / len(close)
+    mixed = bool((alike.diagonal() < 1.0).any())
     slopes: dict[str, list[tuple[int, FloatArray]]] = {}
     for number, one in enumerate(candidates):
         place = one.place
@@ -287,16 +294,17 @@ def _worth_simulating(
     chosen = np.ones(len(candidates), dtype=bool)
     for of_kind in slopes.values():
         numbers = np.array([number for number, _ in of_kind])
-        several = np.array([slope for _, slope in of_kind])
-        changes = several @ at_once
-        sizes = (changes**2).sum(1)
-        scores = (changes @ left[: changes.shape[1]]) ** 2 / (1.0 + sizes)
-        if len(steps.onsets):
-            late = (steps.along @ several.T) ** 2 / (1.0 + steps.squares @ several.T**2)
-            scores = np.maximum(scores, late.max(0))
+        single = np.array([slope for _, slope in of_kind])
         chosen[numbers] = False
-        chosen[numbers[np.argsort(-scores, kind="stable")[:EXPLAINING]]] = True
-        chosen[numbers[np.argsort(-sizes, kind="stable")[:MOVING]]] = True
+        for several in (single, single @ alike) if mixed else (single,):
+            changes = several @ at_once
+            sizes = (changes**2).sum(1)
+            scores = (changes @ left[: changes.shape[1]]) ** 2 / (1.0 + sizes)
+            if len(steps.onsets):
+                late = (steps.along @ several.T) ** 2 / (1.0 + steps.squares @ several.T**2)
+                scores = np.maximum(scores, late.max(0))
+            chosen[numbers[np.argsort(-scores, kind="stable")[:EXPLAINING]]] = True
+            chosen[numbers[np.argsort(-sizes, kind="stable")[:MOVING]]] = True
     return chosen
 
 

@@ -112,11 +112,7 @@ impl Flexible {
             ends += frame.stiffness * motions;
             inner = frame.inner * motions;
         }
-        let elastic = member
-            .frame
-            .as_ref()
-            .map_or(member.length, |frame| frame.beam.length);
-        let tension = self.axial * (elongation - strain * elastic);
+        let tension = self.axial * (elongation - strain * member.length);
         ends += bowed * tension;
         ends[0] -= tension;
         ends[6] += tension;

@@ -174,8 +174,10 @@ pub(crate) fn fixed_end_forces(
         return Ok(forces);
     }
     let beam = &frame.beam;
-    forces[0] = beam.ea * strain[0];
-    forces[6] = -beam.ea * strain[0];
+    // Rigid zones, which are of steel too, grow as much as the rest: gussets do.
+    let push = beam.ea * strain[0] * (member.length / beam.length);
+    forces[0] = push;
+    forces[6] = -push;
     for (plane, gradient) in beam.planes.iter().zip(&strain[1..]) {
         let moment = plane.ei * gradient;
         add(&mut forces, plane, Vector4::new(0.0, -moment, 0.0, moment));

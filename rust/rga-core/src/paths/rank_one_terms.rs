@@ -119,7 +119,7 @@ pub(super) fn find_terms(
             stiffness: young,
             kind,
         };
-        for own in modes(frame, young, structure.connection.row(number)) {
+        for own in modes(member, frame, young, structure.connection.row(number)) {
             let mode = mode(own);
             let moves = mode.moves(structure);
             let found = term(TermKind::Mode(Box::new(mode)));
@@ -253,11 +253,16 @@ fn elongation(member: &Member) -> (f64, (Vector12, RowVector3<f64>)) {
         .map_or(member.length, |frame| frame.beam.length);
     let mut local = Vector12::zeros();
     (local[0], local[6]) = (-1.0, 1.0);
-    (length, (local, RowVector3::new(length, 0.0, 0.0)))
+    (length, (local, RowVector3::new(member.length, 0.0, 0.0)))
 }
 
 /// Of a frame member without yielding ends.
-fn modes(frame: &Frame, young: f64, connection: &[f64]) -> Vec<(Vector12, RowVector3<f64>)> {
+fn modes(
+    member: &Member,
+    frame: &Frame,
+    young: f64,
+    connection: &[f64],
+) -> Vec<(Vector12, RowVector3<f64>)> {
     let (beam, length) = (&frame.beam, frame.beam.length);
     let mode = |entries: &[(usize, f64)], shape: f64, (at, rest): (usize, f64)| {
         let scale = (shape / length).sqrt();
@@ -269,7 +274,7 @@ fn modes(frame: &Frame, young: f64, connection: &[f64]) -> Vec<(Vector12, RowVec
         initial[at] = scale * rest;
         (shape > 0.0).then_some((local, initial))
     };
-    let longer = mode(&[(0, -1.0), (6, 1.0)], beam.ea / young, (0, length));
+    let longer = mode(&[(0, -1.0), (6, 1.0)], beam.ea / young, (0, member.length));
     let twisted = mode(&[(3, -1.0), (9, 1.0)], beam.gj / young, (0, 0.0));
     let mut blocks = vec![vec![longer], vec![twisted]];
     for (plane, bending) in beam.planes.iter().enumerate() {

@@ -15,7 +15,7 @@ USUAL = Positive(0.3, 0.7)
 
 
 class RigidEndZone(Effect):
-    """A rigid length at each end of frame members: gussets."""
+    """A rigid length at each end of frame members: gussets. They expand as their members do."""
 
     kind: Literal["rigid_end_zone"] = "rigid_end_zone"
     action = Action(
