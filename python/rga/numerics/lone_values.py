@@ -8,7 +8,7 @@ from rga.numerics.robust_spread import robust_spread
 #: values on either side that one is held against, and how many of these must be near it
 BESIDE, NEAR = 3, 2
 #: spreads of the steps from value to value beyond which one is not near
-FAR = 10.0
+FAR = 8.0
 #: share of the values that may lie off: where more do, they are no errors; fewest values that show
 #: any
 MOST, FEWEST = 0.1, 10

@@ -99,11 +99,12 @@ class PermittedCauses:
 
     def _of_gauge(self, effect: Mapping[str, Any]) -> bool:
         """A gauge that stands beside its place in the model, about as far as it is said to."""
-        sensor = effect.get("sensor")
+        sensor = str(effect.get("sensor"))
         if effect["kind"] != "gauge_position" or sensor not in self.gauges:
             return False
         stated = self.model["sensors"][sensor]
-        true = np.array(self.gauges[sensor][1:]) - [stated.get("y", 0.0), stated.get("z", 0.0)]
+        _, y, z = self.gauges[sensor]
+        true = np.array([y - stated.get("y", 0.0), z - stated.get("z", 0.0)])
         told = np.array([_estimated(effect.get(axis, 0.0)) for axis in "yz"])
         farthest = int(np.abs(true).argmax())
         return bool(abs(told - true)[farthest] < NEAR * abs(true[farthest]))

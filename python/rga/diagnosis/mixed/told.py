@@ -25,6 +25,7 @@ from rga.diagnosis.modal.doubts import (
     doubts_of_windows,
     drifting,
     following_contexts,
+    following_doubts,
     lagging,
     thin,
     unlike_modes,
@@ -92,6 +93,7 @@ class ToldModes:
         )
         alone = [modal.hypotheses[number] for number in shown if not self._in_record(number)]
         words += weather(readings, alone, self._after) + lagging(likelihood, alone, self._after)
+        words += following_doubts(likelihood, bool(shown), self._after)
         return words + drifting(likelihood, self._after)
 
     def told(
@@ -118,7 +120,10 @@ class ToldModes:
         for number in range(len(self.mixed.fit.hypotheses)):
             causes[first + number] = self._cause(causes[first + number], number)
         readings, record = likelihood.readings, self.record
-        warnings = warnings_of(model, readings) + following_contexts(likelihood, self._after)
+        following = following_contexts(likelihood, self._after)
+        warnings = warnings_of(model, readings)
+        if not any(one in findings.unexplained.looks_like for one in following):
+            warnings += following
         warnings += apart_in_time(readings.time, record.origin + record.time)
         told = findings.model_copy(
             update={

@@ -1,18 +1,15 @@
 """Measured modes beside what is simulated of them, as findings and reports hold them."""
 
 import numpy as np
-import scipy
 
 from rga.arrays import FloatArray
-from rga.diagnosis.modal.checks import squares
+from rga.diagnosis.modal.checks import gain_interval, squares
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.prediction import Prediction
 from rga.findings.modal_arrays import ModeReading
 from rga.findings.schema import FoundMode, Gap, GroupGap, HeldOut, SensorGap, Windows
 from rga.model import Model
-
-#: of intervals
-CONFIDENCE = 0.9
+from rga.simulation.modal.expected import Expected, mac
 
 
 def by_sensor(
@@ -47,11 +44,6 @@ def mode_gap(
     """
     own = [squares(likelihood, one) for one in ends]
     gains = before - after
-    wide = 0.0
-    if len(gains) > 1:
-        quantile = float(scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, len(gains) - 1))
-        wide = quantile * float(gains.std(ddof=1)) / np.sqrt(len(gains))
-    middle = float(gains.mean())
     return Gap(
         before=float(own[0].mean()),
         after=float(own[1].mean()),
@@ -59,8 +51,8 @@ def mode_gap(
         held_out=HeldOut(
             before=float(before.mean()),
             after=float(after.mean()),
-            gain=middle,
-            gain_ci90=(middle - wide, middle + wide),
+            gain=float(gains.mean()),
+            gain_ci90=gain_interval(gains),
         ),
         by_sensor=by_sensor(model, likelihood, *ends),
     )
@@ -117,7 +109,7 @@ def mode_readings(
     return [
         ModeReading(
             name=name,
-            frequency=look.near,
+            frequency=float(np.exp(np.nanmean(readings.log_f[:, at]))),
             scatter=float(readings.scatter[at]),
             found=float(readings.found[at]),
             points=[points[number] for number in look.at],
@@ -125,9 +117,14 @@ def mode_readings(
             log_f=readings.log_f[:, at],
             before=before.log_f[:, at],
             after=after.log_f[:, at],
-            mac=(float(before.mac[at]), float(after.mac[at])),
+            mac=(_alike(look, before.at_points[at]), _alike(look, after.at_points[at])),
             number=(int(before.number[at]) + 1, int(after.number[at]) + 1),
             shapes=(before.shapes[at], after.shapes[at]),
         )
         for at, (name, look) in enumerate(zip(readings.modes, readings.looks, strict=True))
     ]
+
+
+def _alike(look: Expected, at_points: FloatArray) -> float:
+    """MAC of what was measured in all windows and what is simulated of them, at all points."""
+    return mac(look.shape, at_points[look.at]) if len(look.at) else np.nan

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from rga.arrays import FloatArray
 from rga.diagnosis.modal.fit import ModalFit, fitted
@@ -12,6 +13,10 @@ from rga.diagnosis.modal.prediction import Prediction
 #: deviations of a frequency, and of a shape, from which on a mode is off
 OFF = 3.0
 SHAPE_OFF = 2.0
+#: of intervals
+CONFIDENCE = 0.9
+#: probability that all frequencies of a right model are nearer
+CHANCE = 0.95
 
 
 @dataclass(frozen=True)
@@ -25,6 +30,20 @@ class LeftOutModes:
 
     before: FloatArray
     after: FloatArray
+
+    @property
+    def surely_worse(self) -> bool:
+        """Whether causes predict modes worse than the model as given, by their 90 % interval."""
+        return gain_interval(self.before - self.after)[1] < 0.0
+
+
+def gain_interval(gains: FloatArray) -> tuple[float, float]:
+    """The 90 % interval of the mean of gains, float[modes], by Student's t; of one mode, itself."""
+    middle, wide = float(gains.mean()), 0.0
+    if len(gains) > 1:
+        quantile = float(scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, len(gains) - 1))
+        wide = quantile * float(gains.std(ddof=1)) / np.sqrt(len(gains))
+    return middle - wide, middle + wide
 
 
 def squares(likelihood: ModalLikelihood, prediction: Prediction) -> FloatArray:
@@ -72,6 +91,12 @@ def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
                 f"the shape of mode {name} is not the simulated one "
                 f"(MAC {prediction.mac[mode]:.2f})"
             )
+    together = float(((off / spread) ** 2).sum())
+    if not words and together > scipy.stats.chi2.ppf(CHANCE, len(off)):
+        words.append(
+            f"all modes together lie {np.sqrt((off**2).mean()):.1%} off what is simulated, more "
+            f"than a right model leaves in {100 * (1 - CHANCE):.0f} of 100 cases"
+        )
     return words
 
 

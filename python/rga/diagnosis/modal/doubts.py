@@ -210,8 +210,10 @@ def _left_by_weather(likelihood: ModalLikelihood, prediction: Prediction, lag: i
     return total
 
 
-def following_contexts(likelihood: ModalLikelihood, after: Prediction) -> list[str]:
-    """In words: that frequencies follow contexts by more than is usual."""
+def following_contexts(
+    likelihood: ModalLikelihood, after: Prediction, usual: float = WEATHER
+) -> list[str]:
+    """In words: that frequencies follow contexts by more than is usual, as a share of them."""
     readings = likelihood.readings
     words = []
     for name, column in readings.weather.items():
@@ -224,13 +226,18 @@ def following_contexts(likelihood: ModalLikelihood, after: Prediction) -> list[s
                 amounts = np.linalg.pinv(columns[seen]) @ off[seen]
                 sizes[mode] = float(np.ptp(columns[seen] @ amounts))
         most = max(sizes, key=lambda mode: sizes[mode], default="")
-        if sizes and sizes[most] > WEATHER:
+        if sizes and sizes[most] > usual:
             words.append(
                 f"frequencies follow {name} by up to {sizes[most]:.1%} over its range ({most}): "
                 "that is taken for the weather and for no cause; a group that follows it may be "
                 "named where the model has a temperature"
             )
     return words
+
+
+def following_doubts(likelihood: ModalLikelihood, causes: bool, after: Prediction) -> list[str]:
+    """In words: that so much follows contexts that a cause, or none, may be what follows them."""
+    return following_contexts(likelihood, after, WEATHER if causes else BEYOND_WEATHER)
 
 
 def other_freezing(likelihood: ModalLikelihood) -> list[str]:

@@ -1,6 +1,7 @@
 """The diagnosis by modes: a model and a modal record in, findings out."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,11 @@ from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes, moving_nothing
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
+    FEW_MODES,
     doubts_of_windows,
     drifting,
     following_contexts,
+    following_doubts,
     lagging,
     other_freezing,
     thin,
@@ -57,6 +60,8 @@ Progress = Callable[[str, float], None]
 DECIMALS = 2
 #: of what may stand for a cause, by how many the modes are read anew
 READ_ANEW = 5
+#: share of the windows in which it may be in doubt which mode is which
+MOST = 0.5
 
 
 def diagnose_modes(
@@ -98,7 +103,7 @@ def diagnose_modes(
     >>> found = [{"Fn": 0.9 * window} for window in frequencies]
     >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(40)])
     >>> diagnose_modes(mast, record).verdict  # fewer than three modes decide nothing
-    'partial'
+    'unknown'
     """
     tell = progress or (lambda stage, done: None)
     model, seed, chosen = as_model(model), as_seed(seed), as_criteria(criteria)
@@ -119,23 +124,40 @@ def _diagnosed(
         if again.cost < readings.cost:
             readings = again
             found = _searched(model, readings, criteria, progress)
+    if len(readings.modes) < FEW_MODES or readings.doubtful > MOST * len(readings.time):
+        # Few modes, and modes of which it is in doubt which they are, are explained by anything.
+        found = _without_causes(found)
     # What is told is held against what a model usually misses, whatever this one does.
     likelihood = found.fit.likelihood.with_level(MODEL_ERROR)
+    left_out = left_out_modes(likelihood, found.fit)
+    of_structure = any(not one.at_points for one in found.fit.hypotheses)
+    against = []
+    if of_structure and left_out.surely_worse:
+        names = " and ".join(
+            place_words([one.kind.title, *one.place.values()]) for one in found.fit.hypotheses
+        )
+        against.append(
+            f"{names} would explain what was fitted, and modes that were left out are surely "
+            "predicted worse with it"
+        )
+        found, of_structure = _without_causes(found), False
+        likelihood = found.fit.likelihood
+        left_out = left_out_modes(likelihood, found.fit)
     nothing = likelihood.trials.predict({})
     after = found.fit.prediction or nothing
-    left_out = left_out_modes(likelihood, found.fit)
-    against = modes_off(likelihood, after)
-    of_structure = any(not one.at_points for one in found.fit.hypotheses)
+    against += modes_off(likelihood, after)
     if of_structure and left_out.after.mean() >= left_out.before.mean():
         against.append("modes that were left out are predicted no better with the causes")
     against += moving_nothing(likelihood, found.fit) + drifting(likelihood, after)
     against += unlike_modes(readings)
+    following = following_doubts(likelihood, bool(found.fit.hypotheses), after)
     doubts = [
         *against,
         *pairs_in_doubt(likelihood, after),
         *thin(readings, bool(found.fit.hypotheses)),
         *weather(readings, found.fit.hypotheses, after),
         *lagging(likelihood, found.fit.hypotheses, after),
+        *following,
         *other_freezing(likelihood),
         *doubts_of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z)),
     ]
@@ -157,7 +179,8 @@ def _diagnosed(
         ),
         explanations=_explanations(likelihood, found, criteria),
         groups=mode_groups(model, likelihood, nothing, after),
-        warnings=warnings_of(model, readings) + following_contexts(likelihood, after),
+        warnings=warnings_of(model, readings)
+        + [one for one in following_contexts(likelihood, after) if one not in following],
         criteria=criteria,
         seed=seed,
         model_sha256=model.sha256,
@@ -188,6 +211,12 @@ def _read_anew(
         looks = fit.likelihood.trials.looks(causes)
         several.append(ModalReadings.of(model, record, looks, list(causes.values())))
     return several
+
+
+def _without_causes(found: ModalFound) -> ModalFound:
+    """What was found, of which nothing may be named."""
+    nothing = fitted(ModalLikelihood(found.fit.likelihood.trials), [], [])
+    return replace(found, fit=nothing, log_odds=(), rivals=())
 
 
 def _searched(

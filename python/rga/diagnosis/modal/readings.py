@@ -31,7 +31,7 @@ FEW = 0.1
 #: rounds in which shapes, of which each may lack points, are scaled onto their mean
 ROUNDS = 20
 #: share of its frequency by which a mode may always differ from one window to the next
-LONE = 0.02
+LONE = 0.005
 #: usual sizes beyond which a step is drawn in
 FAR_OUT = 3.0
 #: most that one window says of the next

@@ -20,6 +20,8 @@ FITTED, NEAR, SHARE, MOST, ROUGHLY = 8, 12.0, 0.1, 24, 30.0
 MODES_A_CAUSE = 3
 #: coordinates beyond which a parameter is too unlikely for a rival by the data alone
 UNLIKELY = 4.5
+#: log-odds by which a rival is better than what was found, and how often it takes its place
+WORTH_EXCHANGING, EXCHANGED = 1.0, 3
 Progress = Callable[[str, float], None]
 
 
@@ -49,8 +51,26 @@ def search(
     progress: Progress,
 ) -> ModalFound:
     """Find the causes that the modes name."""
-    current = fitted(likelihood, [], [])
-    naming = criteria.naming
+    current, first = _grown(fitted(likelihood, [], []), candidates, criteria, progress)
+    odds, rivals = _weighed(current, first, candidates, progress)
+    for _ in range(EXCHANGED):
+        better = max((one for ranked in rivals for one, _ in ranked), key=evidence, default=current)
+        if better.log_evidence - current.log_evidence < WORTH_EXCHANGING:
+            break
+        # What stands for a cause is better beside those that came after it.
+        current = _pruned(better, criteria.naming.log_odds)
+        odds, rivals = _weighed(current, first, candidates, progress)
+    return ModalFound(current, odds, rivals, first)
+
+
+def _grown(
+    current: ModalFit,
+    candidates: Sequence[Hypothesis],
+    criteria: Criteria,
+    progress: Progress,
+) -> tuple[ModalFit, list[ModalProspect]]:
+    """Causes added one by one as long as they are worth it, and the prospects beside nothing."""
+    likelihood, naming = current.likelihood, criteria.naming
     first: list[ModalProspect] = []
     modes = len(likelihood.readings.modes)
     for number in range(naming.most_causes):
@@ -69,13 +89,23 @@ def search(
         if best.log_evidence - current.log_evidence < naming.log_odds:
             break
         current = _pruned(best, naming.log_odds)
+    return current, first
+
+
+def _weighed(
+    current: ModalFit,
+    first: Sequence[ModalProspect],
+    candidates: Sequence[Hypothesis],
+    progress: Progress,
+) -> tuple[tuple[float, ...], tuple[tuple[tuple[ModalFit, float], ...], ...]]:
+    """Log-odds of each cause against leaving it out, and what could stand in its place."""
     odds, rivals = [], []
     for number in range(len(current.hypotheses)):
         progress("weighing rivals", number / len(current.hypotheses))
         odds.append(current.log_evidence - without(current, number).log_evidence)
-        rivals.append(tuple(_rivals(likelihood, current, number, first, candidates)))
+        rivals.append(tuple(_rivals(current.likelihood, current, number, first, candidates)))
     progress("weighing rivals", 1.0)
-    return ModalFound(current, tuple(odds), tuple(rivals), first)
+    return tuple(odds), tuple(rivals)
 
 
 def borne(

@@ -10,7 +10,7 @@ from rga.simulation.modal.expected import FEWEST, SHAPE_ERROR, Expected
 #: square of the length below which a shape is rounding
 LEAST_LENGTH = float(np.finfo(float).tiny)
 #: share of the longest shape below which a shape is rounding: the mode moves none of the points
-STILL = 1e-12
+STILL = 1e-6
 #: share by which what is not modelled couples modes: the nearer their frequencies, the more of one
 #: is in the shape of the other; parts of another mode that are less than the second say nothing
 COUPLING, LEAST_PART = 0.004, 0.05

@@ -24,6 +24,8 @@ OTHER_UNITS = {
 FAR, OFF, ONE = 2.5, 1.25, 0.01
 #: share of the entries that a unit must explain, and by how much it may be off
 MOST, NEAR = 0.8, 0.1
+#: share of the entries that are modes as they are, below which another unit is looked for
+FEW = 0.5
 #: MAC with the sizes of a mode alone, and how much less with its signs, of a shape that lost them
 SAME, LESS = 0.95, 0.05
 
@@ -53,11 +55,12 @@ def check_units(
             "give real and imaginary parts, not amplitudes",
         )
     own = named.mode >= 0
-    if not own.any():
-        unit = _unit_of(record.frequency, looks)
+    unit = _unit_of(record.frequency, looks) if own.mean() < FEW else None
+    if unit or not own.any():
         guess = f": they look like {unit}, give them in Hz" if unit else ""
+        few = f"{own.sum()} of {len(own)} entries are modes" if own.any() else "none of the modes"
         raise InputError(
-            "none of the modes that the model expects is in the record",
+            f"{few} that the model expects" + ("" if own.any() else " is in the record"),
             f"{where}; frequencies of the record {_range(record.frequency)} Hz{guess}",
             "compare the frequencies and shapes of the record with `near`, `within` and `shape` "
             "of the modes, and the names of the points",
@@ -86,7 +89,8 @@ def _unit_of(frequency: FloatArray, looks: list[Expected]) -> str | None:
         off = np.abs(np.log(frequency / size)[:, None] - near).min(axis=1)
         if (off < NEAR).mean() >= MOST:
             return unit
-    return None
+    off = np.abs(-np.log(frequency)[:, None] - near).min(axis=1)
+    return "periods in s" if (off < NEAR).mean() >= MOST else None
 
 
 def _without_signs(record: ModalRecord, looks: Sequence[Expected], points: list[str]) -> bool:
