@@ -12,6 +12,8 @@ from rga.findings.phrases import place_words
 LIKENED = 0.005
 #: change of every frequency, over the error that a model makes, by which a cause shows in none
 UNMOVED = 0.25
+#: share of the largest change, within which modes are again as they were before it
+AS_BEFORE = 0.3
 #: change of a frequency that is worth telling, as a share of it
 WORTH_TELLING = 5e-4
 
@@ -57,6 +59,26 @@ def _likened_modes(likelihood: ModalLikelihood, without: Prediction, after: Pred
         if gained[k] > max(LIKENED, 0.1 * gained.max())
     ]
     return f"with it these shapes are the simulated ones: {', '.join(told)}" if told else ""
+
+
+def passing(likelihood: ModalLikelihood, fit: ModalFit) -> list[str]:
+    """In words: that causes which come one after the other leave the modes as they were before."""
+    onsets = sorted({one.onset for one in fit.hypotheses if one.onset is not None})
+    if len(onsets) < 2 or fit.prediction is None:
+        return []
+    readings = likelihood.readings
+    changes = fit.prediction.log_f - likelihood.trials.predict({}).log_f
+    stage = np.searchsorted(onsets, readings.time, side="right")
+    before, *between, last = (changes[stage == number].mean(axis=0) for number in np.unique(stage))
+    farthest = max(float(np.abs(one - before).max()) for one in between)
+    if float(np.abs(last - before).max()) > AS_BEFORE * farthest:
+        return []
+    first, end = readings.label(onsets[0]), readings.label(onsets[-1])
+    words = (
+        f"from {end} on the modes are again as they were before {first}: what came and went may "
+        "be one thing, a load or ice, in place of several"
+    )
+    return [words]
 
 
 def moving_nothing(likelihood: ModalLikelihood, fit: ModalFit) -> list[str]:

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
-from rga.diagnosis.modal.changes import change, moved_modes, moving_nothing
+from rga.diagnosis.modal.changes import change, moved_modes, moving_nothing, passing
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
     FEW_MODES,
@@ -158,6 +158,7 @@ def _diagnosed(
         *weather(readings, found.fit.hypotheses, after),
         *lagging(likelihood, found.fit.hypotheses, after),
         *following,
+        *passing(likelihood, found.fit),
         *other_freezing(likelihood),
         *doubts_of_windows(likelihood, effects_at(found.fit.hypotheses, found.fit.z)),
     ]

@@ -7,7 +7,7 @@ import pytest
 
 from independent.modal_bridge import Hidden, measured
 from rga.diagnosis.modal.candidates import modal_hypotheses
-from rga.diagnosis.modal.changes import moving_nothing
+from rga.diagnosis.modal.changes import moving_nothing, passing
 from rga.diagnosis.modal.fit import ModalFit, fitted, predicted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.readings import ModalReadings
@@ -42,3 +42,24 @@ def test_a_cause_that_moves_no_mode_is_told(factor: float, moves: bool) -> None:
 
 def test_a_change_within_the_record_is_held_against_what_was_before_it() -> None:
     assert moving_nothing(*fit_at(0.999, onset=18_000.0)) == []
+
+
+@pytest.mark.parametrize(("again", "told"), [(1.0, True), (0.7, False)])
+def test_what_comes_and_goes_may_be_one_thing(again: float, told: bool) -> None:
+    """A bracing that is softer from a window on, and from another as it was, or hardly better."""
+    model, record = measured(0, Hidden(), windows=12)
+    likelihood = ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
+    stiffness = {
+        str(one.place["group"]): one
+        for one in modal_hypotheses(likelihood.trials)
+        if one.name == "member_stiffness" and "group" in one.place
+    }
+    softer = stiffness["bottom bracing"].beginning(4 * 3600.0)
+    back = stiffness["bottom bracing"].beginning(8 * 3600.0)
+    fit = fitted(likelihood, [softer, back], [0.0, 0.0])
+    priors = [next(iter(one.priors.values())) for one in (softer, back)]
+    factors = (0.5, again / 0.5)
+    z = np.array([prior.z(factor) for prior, factor in zip(priors, factors, strict=True)])
+    fit = replace(fit, z=z, prediction=predicted(likelihood, [softer, back], z))
+    words = passing(likelihood, fit)
+    assert [one.startswith("from 28800.0 on the modes are again") for one in words] == [True] * told
