@@ -53,6 +53,13 @@ TABLES: dict[str, tuple[bytes, str]] = {
     "all missing": (table(windows=0), "give at least one row"),
     "no frequency": (table(lambda f: float("nan")), "there is no frequency"),
     "no frequency in a wide table": (b"time,m0,m1\n0,,\n600,,\n", "no mode was found"),
+    "a time that is none": (
+        b"\n".join(
+            line.replace(line.split(b",")[0], b"2026-13-45T00:00:00") if number == 4 else line
+            for number, line in enumerate(table().split(b"\n"))
+        ),
+        "modes.csv, line 5",
+    ),
     "two lines of a time": (
         b"time,m0,m1,m2\n0,1.7,2.9,19\n0,1.8,2.9,19\n",
         "two lines have the same time",

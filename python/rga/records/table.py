@@ -1,6 +1,6 @@
 """Columns of a logger's file, whatever its format: the common raw table."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -43,6 +43,7 @@ class Table:
         frame: its columns; those of a text file as stripped text, null where a cell is empty.
         row_name, first: how a reader of the file counts rows ("line", 2 for a CSV with a header).
         skipped: lines without a row that lie between rows, counted as those are, in their order.
+        rows: of the file, number of each row here; None: all, as the file has them.
         sha256: hash of the file.
         format: name of the format, as a reader is told.
         units: by column, as the file writes them, where it states any.
@@ -60,6 +61,7 @@ class Table:
     row_name: str
     first: int
     skipped: tuple[int, ...] = ()
+    rows: Sequence[int] | None = None
     sha256: str = ""
     format: str = "plain text"
     units: Mapping[str, str] = field(default_factory=dict)
@@ -73,7 +75,7 @@ class Table:
 
     def where(self, row: int, column: str | None = None) -> str:
         """The place of a cell, for an error."""
-        line = self.first + row
+        line = self.first + (row if self.rows is None else self.rows[row])
         for blank in self.skipped:
             line += blank <= line
         place = f"{self.path}, {self.row_name} {line}"

@@ -273,8 +273,10 @@ def _time(table: Table) -> tuple[FloatArray, str | float]:
     if stamps.null_count():
         row = int(np.argmax(stamps.is_null().to_numpy()))
         raise InputError("there is no time", table.where(row, TIME), "give one")
-    once = _in_time(table.frame.unique(TIME, keep="first", maintain_order=True))
-    clock = read_clock(replace(table, frame=once), TimeColumns())
+    numbered = table.frame.select(TIME).with_row_index("row")
+    once = _in_time(numbered.unique(TIME, keep="first", maintain_order=True))
+    rows_once = once["row"].to_list()
+    clock = read_clock(replace(table, frame=table.frame[rows_once], rows=rows_once), TimeColumns())
     number = {stamp: row for row, stamp in enumerate(once[TIME])}
     rows = np.array([number[stamp] for stamp in stamps], dtype=np.int64)
     return clock.seconds[rows], clock.start

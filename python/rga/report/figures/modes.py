@@ -23,6 +23,8 @@ MOST, LARGEST = 10, 0.09
 #: windows from which on frequencies are drawn over time
 SOME = 3
 COLUMNS = 2
+#: windows from which on they are drawn as a picture: a report must open
+MANY = 5000
 
 
 def draw_shapes(account: ModalArrays) -> Markup:
@@ -135,6 +137,8 @@ def _frequencies_over(
     modes = account.modes[:MOST]
     rows = -(-len(modes) // COLUMNS)
     simulated: dict[str, Any] = {"ls": "", "marker": ".", "ms": 2.5} if dots else {"lw": 1.2}
+    many = len(along) > MANY
+    simulated |= {"rasterized": many}
     with style():
         tall = 1.9 * rows + 0.6
         figure = Figure(figsize=(10.0, tall))
@@ -144,7 +148,7 @@ def _frequencies_over(
         )  # fmt: skip
         for place, mode in enumerate(modes):
             axes = figure.add_subplot(cells[place // COLUMNS, place % COLUMNS])
-            axes.plot(along, _hertz(mode.log_f), ".", color=MEASURED, ms=3)
+            axes.plot(along, _hertz(mode.log_f), ".", color=MEASURED, ms=3, rasterized=many)
             axes.plot(along, _hertz(mode.before), color=BEFORE, **simulated)
             axes.plot(along, _hertz(mode.after), color=AFTER, **simulated)
             axes.set_title(f"{mode.name} [Hz]", fontsize=8.5, loc="left", pad=2)
