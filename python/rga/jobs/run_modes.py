@@ -78,8 +78,9 @@ def run_modes(
     >>> record = rga.modal_record(found, mast, [], time=[600.0 * k for k in range(200)])
     >>> from tempfile import mkdtemp
     >>> outcome = run_modes(mast, record, mkdtemp())
+    >>> # Two modes tell that something changed, and not what.
     >>> outcome.findings.verdict, outcome.watched.baseline, len(outcome.watched.warnings)
-    ('partial', 66, 0)
+    ('unknown', 66, 0)
     """
     model, settings = as_model(model), as_settings(settings)
     idle = sorted(settings.model_fields_set - USED)
