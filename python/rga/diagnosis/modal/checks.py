@@ -15,6 +15,8 @@ OFF = 3.0
 SHAPE_OFF = 2.0
 #: of intervals
 CONFIDENCE = 0.9
+#: times what they were before, from which on modes are predicted worse in earnest
+MUCH = 1.5
 #: probability that all frequencies of a right model are nearer
 CHANCE = 0.95
 
@@ -33,8 +35,14 @@ class LeftOutModes:
 
     @property
     def surely_worse(self) -> bool:
-        """Whether causes predict modes worse than the model as given, by their 90 % interval."""
-        return gain_interval(self.before - self.after)[1] < 0.0
+        """Whether causes predict modes worse than the model as given, by their 90 % interval.
+
+        They must be worse by half, and than a right model: by the means over a record, a cause
+        that begins late is hardly seen.
+        """
+        least = max(1.0, MUCH * float(self.before.mean()))
+        worse = float(self.after.mean()) > least
+        return worse and gain_interval(self.before - self.after)[1] < 0.0
 
 
 def gain_interval(gains: FloatArray) -> tuple[float, float]:

@@ -11,13 +11,24 @@ from rga.diagnosis.modal.checks import LeftOutModes, gain_interval, modes_off
 
 @pytest.mark.parametrize(
     ("after", "worse"),
-    [([9.0, 8.0, 7.5, 9.5], True), ([0.5, 9.0, 0.2, 1.0], False), ([0.1, 0.2, 0.1, 0.3], False)],
+    [
+        ([9.0, 8.0, 7.5, 9.5], True),
+        ([2.2, 1.2, 1.7, 2.2], False),
+        ([0.5, 9.0, 0.2, 1.0], False),
+        ([0.1, 0.2, 0.1, 0.3], False),
+    ],
 )
 def test_causes_are_refuted_where_all_modes_are_predicted_worse(
     after: list[float], worse: bool
 ) -> None:
     left_out = LeftOutModes(np.array([2.0, 1.0, 1.5, 2.0]), np.array(after))
     assert left_out.surely_worse == worse
+
+
+def test_what_is_hardly_off_at_all_refutes_nothing() -> None:
+    left_out = LeftOutModes(np.full(3, 0.02), np.array([0.1, 0.11, 0.12]))
+    assert gain_interval(left_out.before - left_out.after)[1] < 0.0
+    assert not left_out.surely_worse
 
 
 def test_the_gain_of_one_mode_has_no_interval() -> None:
