@@ -122,8 +122,7 @@ class ToldModes:
         readings, record = likelihood.readings, self.record
         following = following_contexts(likelihood, self._after)
         warnings = warnings_of(model, readings)
-        if not any(one in findings.unexplained.looks_like for one in following):
-            warnings += following
+        warnings += [one for one in following if one not in findings.unexplained.looks_like]
         warnings += apart_in_time(readings.time, record.origin + record.time)
         told = findings.model_copy(
             update={

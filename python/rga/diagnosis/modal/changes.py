@@ -69,9 +69,10 @@ def passing(likelihood: ModalLikelihood, fit: ModalFit) -> list[str]:
     readings = likelihood.readings
     changes = fit.prediction.log_f - likelihood.trials.predict({}).log_f
     stage = np.searchsorted(onsets, readings.time, side="right")
-    before, *between, last = (changes[stage == number].mean(axis=0) for number in np.unique(stage))
-    farthest = max(float(np.abs(one - before).max()) for one in between)
-    if float(np.abs(last - before).max()) > AS_BEFORE * farthest:
+    stages = [changes[stage == number].mean(axis=0) for number in np.unique(stage)]
+    before, last = stages[0], stages[-1]
+    farthest = max(float(np.abs(one - before).max()) for one in stages)
+    if float(np.abs(last - before).max()) >= AS_BEFORE * farthest:
         return []
     first, end = readings.label(onsets[0]), readings.label(onsets[-1])
     words = (

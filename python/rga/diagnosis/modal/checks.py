@@ -103,7 +103,7 @@ def modes_off(likelihood: ModalLikelihood, prediction: Prediction) -> list[str]:
     if not words and together > scipy.stats.chi2.ppf(CHANCE, len(off)):
         words.append(
             f"all modes together lie {np.sqrt((off**2).mean()):.1%} off what is simulated, more "
-            f"than a right model leaves in {100 * (1 - CHANCE):.0f} of 100 cases"
+            f"than a right model leaves in {100 * CHANCE:.0f} of 100 cases"
         )
     return words
 
