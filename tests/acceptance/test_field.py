@@ -279,19 +279,23 @@ def test_a_diagnosis_of_the_field_is_judged() -> None:
 
 
 def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
-    model = {"members": {n: {"material": "steel", "groups": ["chord"]} for n in ("a", "b")}}
-    known = PermittedCauses(("joint_rigidity",), "S1", {"a": 0.9, "b": 0.9}, model)
+    member = {"material": "steel", "groups": ["chord"], "nodes": ["u", "v"]}
+    model = {"nodes": {"u": [0, 0, 0], "v": [0, 3, 4]}, "members": {"a": member, "b": member}}
+    pinned = {"a": 0.0, "b": 0.0}
+    known = PermittedCauses(("joint_rigidity",), "S1", {"a": 0.9, "b": 0.9}, pinned, model)
     modulus = {"kind": "elastic_modulus", "material": "steel", "factor": {"value": 0.91}}
     assert known.has(modulus)
     assert not known.has({**modulus, "factor": 1.08})
     assert not known.has({**modulus, "factor": 0.7})
     assert not known.has({**modulus, "onset": 3.0})
-    assert not PermittedCauses(stiffness={"a": 1.01, "b": 1.0}, model=model).has(
-        {**modulus, "factor": 1.01}
-    )
-    member = {"kind": "member_stiffness", "member": "a", "factor": 0.9}
-    assert known.has(member)
-    assert not known.has({**member, "factor": 0.5})
+    nearly = PermittedCauses(stiffness={"a": 1.01, "b": 1.0}, gussets=pinned, model=model)
+    assert not nearly.has({**modulus, "factor": 1.01})
+    one = {"kind": "member_stiffness", "member": "a", "factor": 0.9}
+    assert known.has(one)
+    assert not known.has({**one, "factor": 0.5})
+    assert not known.has({**one, "factor": 1.1})
+    # Gussets of 0.5 m at both ends of 5 m leave 4 m that give way.
+    assert replace(known, gussets={"a": 0.5, "b": 0.5}).has({**one, "factor": 1.1})
     assert known.has({"kind": "member_stiffness", "group": "chord", "factor": 0.88})
     assert known.has({"kind": "joint_rigidity", "group": "chord"})
     assert known.has({"kind": "sensor_swap", "sensors": ["S2", "S1"]})

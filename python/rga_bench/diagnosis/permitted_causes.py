@@ -28,6 +28,7 @@ class PermittedCauses:
         kinds: of the true state of a frame that is modelled as a truss.
         broken: the channel that is broken, if there is one.
         stiffness: of every member over the model's, where rollings differ [-].
+        gussets: rigid length at each end of every member [m].
         model: of the case, as a dict.
         gauges: where each stands: a share of the length of its member, y and z [m].
     """
@@ -35,6 +36,7 @@ class PermittedCauses:
     kinds: tuple[str, ...] = ()
     broken: str | None = None
     stiffness: Mapping[str, float] = field(default_factory=dict)
+    gussets: Mapping[str, float] = field(default_factory=dict)
     model: Mapping[str, Any] = field(default_factory=dict)
     gauges: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
@@ -48,6 +50,7 @@ class PermittedCauses:
             kinds=WELDED if case.truth["reality"] == "frame" else (),
             broken=broken["sensor"] if broken else None,
             stiffness=case.truth["stiffness"],
+            gussets=dict(zip(case.model["members"], case.truth["gussets"], strict=True)),
             model=case.model,
             gauges=case.truth["gauges"],
         )
@@ -76,7 +79,7 @@ class PermittedCauses:
         return self.broken is not None and self.broken in _listed(sensors)
 
     def _of_batch(self, effect: Mapping[str, Any]) -> bool:
-        """A stiffness that rolling mills put there, near its true value."""
+        """A stiffness that rolling mills and gussets put there, near its true value."""
         members = self.model.get("members", {})
         if effect["kind"] == "elastic_modulus":
             materials = _listed(effect["material"])
@@ -93,9 +96,19 @@ class PermittedCauses:
             return False
         if not several or effect.get("onset") is not None:
             return False
-        true = float(np.exp(np.mean([np.log(self.stiffness[name]) for name in several])) - 1.0)
         off = _estimated(effect["factor"]) - 1.0
-        return abs(true) > OFF and abs(off - true) < NEAR * abs(true)
+        rolled = np.array([self.stiffness[name] for name in several])
+        # Between its nodes, which is what moves them, a member is stiffer by its rigid ends.
+        between = rolled / np.array([1.0 - self._rigid_share(name) for name in several])
+        return any(
+            abs(true) > OFF and abs(off - true) < NEAR * abs(true)
+            for true in (float(np.exp(np.log(one).mean()) - 1.0) for one in (rolled, between))
+        )
+
+    def _rigid_share(self, member: str) -> float:
+        """Share of the length of a member that its gussets are."""
+        first, last = (self.model["nodes"][node] for node in self.model["members"][member]["nodes"])
+        return 2.0 * self.gussets[member] / float(np.linalg.norm(np.subtract(last, first)))
 
     def _of_gauge(self, effect: Mapping[str, Any]) -> bool:
         """A gauge that stands beside its place in the model, about as far as it is said to."""

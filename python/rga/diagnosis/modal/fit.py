@@ -6,6 +6,7 @@ removed member, or two modes that trade places, are no matter of slopes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import effects_at
 from rga.errors import InputError, UnstableStructureError
+from rga.model.parameter import NORMAL_90
 
 #: difference of a derivative by z; steps, and how often one is shortened
 STEP, STEPS, SHORTENED = 1e-3, 12, 6
@@ -22,6 +24,9 @@ STEP, STEPS, SHORTENED = 1e-3, 12, 6
 FARTHEST, LONGEST, ENOUGH = 8.0, 2.0, 1e-3
 #: where the data alone decide: weight of the prior, and bounds of z
 UNWEIGHED, ANYWHERE = 1e-4, 60.0
+#: what the loss rises by to the ends of a 90 % interval, what share of it slopes must keep, and
+#: how often a distance to an end is doubled and halved
+RISE, NEARLY, DOUBLED, HALVED = 0.5 * NORMAL_90**2, 0.8, 8, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +62,49 @@ class ModalFit:
         """Of z, prior and data together, float[parameters, parameters]."""
         return np.asarray(self.signatures @ self.signatures.T + np.eye(len(self.z)))
 
-    def spreads(self) -> FloatArray:
-        """Posterior standard deviation of each coordinate."""
-        return np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information))))
+    @cached_property
+    def interval(self) -> FloatArray:
+        """Ends of the 90 % interval of each coordinate, float[parameters, 2].
+
+        By the slopes, or where the loss has risen as much, where that is farther: where another
+        pairing of modes comes into question, slopes are steep that are none.
+        """
+        covariance = np.linalg.inv(self.information)
+        ends = np.zeros((len(self.z), 2))
+        for number, along in enumerate(covariance / np.sqrt(np.diag(covariance))[:, None]):
+            for side, sign in enumerate((-1.0, 1.0)):
+                end = sign * NORMAL_90 * along
+                ends[number, side] = self.z[number] + self._farther(end) * end[number]
+        return ends
 
     @property
     def points(self) -> list[str]:
         """Points at which the last hypothesis acts on what is measured."""
         return self.hypotheses[-1].points if self.hypotheses else []
+
+    def _farther(self, end: FloatArray) -> float:
+        """How many times farther the end of a 90 % interval lies than the slopes have it."""
+        if self.prediction is None or self._rise(end) >= NEARLY * RISE:
+            return 1.0
+        low, high = 1.0, 2.0
+        for _ in range(DOUBLED):
+            if self._rise(high * end) >= RISE:
+                break
+            low, high = high, 2.0 * high
+        for _ in range(HALVED):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if self._rise(middle * end) >= RISE else (middle, high)
+        return high
+
+    def _rise(self, move: FloatArray) -> float:
+        """How much more is lost, prior and freedom of the modes included, away from the fit."""
+        there = self.z + move
+        other = predicted(self.likelihood, self.hypotheses, there)
+        if other is None:
+            return np.inf
+        left = self.likelihood.residual(other)
+        lost = 0.5 * float(left @ left + there @ there) + self.likelihood.freedom(other)
+        return lost - self.likelihood_loss - 0.5 * float(self.z @ self.z)
 
     def of(self, number: int) -> slice:
         """The coordinates of one hypothesis."""

@@ -48,7 +48,7 @@ from rga.findings.schema import (
 )
 from rga.model import Model, as_model
 from rga.model.effect import Effect
-from rga.model.parameter import NORMAL_90, Estimated
+from rga.model.parameter import Estimated
 from rga.numerics.seeds import as_seed
 from rga.provenance import versions
 from rga.records.modal.read import load_modal_record
@@ -235,11 +235,10 @@ def estimated(fit: ModalFit, number: int) -> Effect:
     """A cause as an effect with its estimates and their 90 % intervals."""
     hypothesis, where = fit.hypotheses[number], fit.of(number)
     values = {}
-    spreads = fit.spreads()
-    for (name, prior), z, spread in zip(
-        hypothesis.priors.items(), fit.z[where], spreads[where], strict=True
+    for (name, prior), z, interval in zip(
+        hypothesis.priors.items(), fit.z[where], fit.interval[where], strict=True
     ):
-        ends = sorted(prior.value(float(z + sign * NORMAL_90 * spread)) for sign in (-1, 1))
+        ends = sorted(prior.value(float(end)) for end in interval)
         values[name] = Estimated(value=prior.value(float(z)), ci90=(ends[0], ends[1]))
     found = hypothesis.effect(fit.z[where]).with_values(values)
     if hypothesis.onset is None:
