@@ -1,7 +1,7 @@
 """Parameters of effects: their values in a model file, and their priors."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Protocol
 
 import numpy as np
@@ -164,24 +164,28 @@ class Normal:
 
     Attributes:
         trials: z at which a screening looks.
+        tail: of values more than one standard deviation away, as for a `Factor`.
 
     >>> Normal(0.0, 2.0).value(1.5)
     3.0
+    >>> round(Normal(0.0, 1.0, tail=0.5).z(15.0), 1)
+    6.3
     """
 
     centre: float
     spread: float
     trials: tuple[float, ...] = (0.1,)
+    tail: float = 0.0
 
     def value(self, z: float) -> float:
-        return self.centre + self.spread * z
+        return self.centre + self.spread * _with_tail(z, self.tail)
 
     def z(self, value: float) -> float:
-        return (value - self.centre) / self.spread
+        return _without_tail((value - self.centre) / self.spread, self.tail)
 
     def times(self, scale: float) -> "Normal":
         """The same of a value that is counted in a scale."""
-        return Normal(self.centre * scale, self.spread * scale, self.trials)
+        return replace(self, centre=self.centre * scale, spread=self.spread * scale)
 
     def __str__(self) -> str:
         return _likely(self)
@@ -194,8 +198,7 @@ class Factor:
     Attributes:
         spread: standard deviation of its logarithm where that is small.
         tail: of values more than one standard deviation away, which are likelier the larger it
-            is; 0: log-normal. Beyond, the logarithm is that of Jones and Pewsey (Sinh-arcsinh
-            distributions, Biometrika 96, 2009): what is lost altogether remains possible.
+            is; 0: log-normal. What is lost altogether remains possible.
 
     >>> Factor(0.3).value(0.0), str(Factor(0.3))
     (1.0, '0.61 to 1.6')
@@ -207,15 +210,10 @@ class Factor:
     tail: float = 0.0
 
     def value(self, z: float) -> float:
-        far = max(abs(z) - 1.0, 0.0) if self.tail else 0.0
-        beyond = np.sinh(self.tail * far) / self.tail if far else 0.0
-        return float(np.exp(self.spread * np.copysign(abs(z) - far + beyond, z)))
+        return float(np.exp(self.spread * _with_tail(z, self.tail)))
 
     def z(self, value: float) -> float:
-        usual = float(np.log(value)) / self.spread
-        beyond = max(abs(usual) - 1.0, 0.0) if self.tail else 0.0
-        far = float(np.arcsinh(self.tail * beyond)) / self.tail if beyond else 0.0
-        return float(np.copysign(abs(usual) - beyond + far, usual))
+        return _without_tail(float(np.log(value)) / self.spread, self.tail)
 
     @property
     def trials(self) -> tuple[float, ...]:
@@ -252,6 +250,22 @@ class Positive:
 
     def __str__(self) -> str:
         return _likely(self)
+
+
+def _with_tail(z: float, tail: float) -> float:
+    """z, and farther out from one standard deviation on.
+
+    As in Jones and Pewsey: Sinh-arcsinh distributions, Biometrika 96, 2009.
+    """
+    far = max(abs(z) - 1.0, 0.0) if tail else 0.0
+    beyond = np.sinh(tail * far) / tail if far else 0.0
+    return float(np.copysign(abs(z) - far + beyond, z))
+
+
+def _without_tail(usual: float, tail: float) -> float:
+    beyond = max(abs(usual) - 1.0, 0.0) if tail else 0.0
+    far = float(np.arcsinh(tail * beyond)) / tail if beyond else 0.0
+    return float(np.copysign(abs(usual) - beyond + far, usual))
 
 
 def _likely(prior: Prior) -> str:

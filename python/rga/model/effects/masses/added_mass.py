@@ -10,7 +10,8 @@ from rga.model.schema import Model
 from rga.model.structure import Structure
 
 USUAL = Normal(0.0, 100.0)
-USUAL_ON_NODE = Normal(0.0, 1000.0)
+#: on a node, where it may be a vehicle
+USUAL_ON_NODE = Normal(0.0, 1000.0, tail=0.5)
 #: of what the model states there already, where that is more
 SHARE = 0.25
 
@@ -33,8 +34,8 @@ class AddedMass(Effect):
         test="level the span against earlier levels: what moves also weighs",
     )
     usual = (
-        f"per_length {USUAL} kg/m, mass {USUAL_ON_NODE} kg, or {SHARE:.0%} of what the model has "
-        "there where that is more: judgements"
+        f"per_length {USUAL} kg/m, mass {USUAL_ON_NODE} kg with a long tail, or {SHARE:.0%} of "
+        "what the model has there where that is more: judgements"
     )
     structural = True
     on_modes = True
@@ -55,9 +56,9 @@ class AddedMass(Effect):
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from ({"group": group} for group in model.groups)
+        yield from ({"node": node} for node in model.nodes)
         masses = (mass.node for mass in model.masses.values() if mass.node is not None)
         heavy = list(dict.fromkeys(masses))
-        yield from ({"node": node} for node in heavy)
         if len(heavy) > 1:
             yield {"node": heavy}
 
@@ -72,7 +73,7 @@ class AddedMass(Effect):
             for one in model.masses.values()
             if there & set(listed(getattr(one, key)))
         ]
-        return {parameter: Normal(0.0, max([usual.spread, *(SHARE * one for one in stated)]))}
+        return {parameter: usual.times(max([1.0, *(SHARE * one / usual.spread for one in stated)]))}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         masses = structure.masses
