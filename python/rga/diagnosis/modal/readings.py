@@ -307,7 +307,7 @@ def _unlike(ones: Iterable[FloatArray], others: Iterable[FloatArray]) -> list[fl
         (one, other, np.isfinite(one) & np.isfinite(other))
         for one, other in zip(ones, others, strict=True)
     )
-    return [1.0 - mac(one[both], other[both]) for one, other, both in pairs if both.any()]
+    return [max(0.0, 1.0 - mac(one[both], other[both])) for one, other, both in pairs if both.any()]
 
 
 def _reference(given: Expected, at: IntArray) -> FloatArray:
