@@ -9,7 +9,7 @@ import numpy as np
 
 from rga import _core
 from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.modal.points.errors import PointErrors, mixing
+from rga.diagnosis.modal.points.errors import WRONG, PointErrors, mixing, stiffness_off
 from rga.diagnosis.modal.points.recorded import as_recorded
 from rga.diagnosis.modal.prediction import Computed, Prediction
 from rga.diagnosis.modal.readings import ModalWindows
@@ -92,6 +92,9 @@ class ModalTrials(Generic[AnyWindows]):
         self._near = self._reanalysis(usual)
         self._count = max(self._count, len(self._modes(usual)[0]) - 1 + BEYOND)
         self._near = self._reanalysis(usual)
+        self._wrong = max(WRONG)
+        self._wrong = stiffness_off(np.nanmean(readings.log_f - self.predict({}).log_f, axis=0))
+        self._known, self._kept = {}, 0
 
     @property
     def follows_contexts(self) -> bool:
@@ -285,7 +288,7 @@ class ModalTrials(Generic[AnyWindows]):
             at_points[number],
             true,
             at_points,
-            mixing(looks, log_f, true, number),
+            mixing(looks, log_f, true, number, self._wrong),
             np.array(
                 [
                     mac(look.shape, one) if len(look.at) else np.nan

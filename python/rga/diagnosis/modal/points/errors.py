@@ -12,9 +12,12 @@ from rga.arrays import FloatArray, IntArray
 from rga.simulation.modal.expected import Expected
 from rga.simulation.modal.mixed_shapes import STILL
 
-#: share by which a stiffness may be off anywhere: a perturbation mixes modes by it over twice the
-#: distance of their frequencies (Fox and Kapoor, AIAA Journal 6, 1968), and at most at will
-WRONG, AT_WILL = 0.25, 1.0
+#: share by which a stiffness may be off anywhere, at least and at most, and as a multiple of what
+#: frequencies are off together
+WRONG, FOLLOWING = (0.08, 0.25), 8.0
+#: a perturbation mixes modes by that share over twice the distance of their frequencies (Fox and
+#: Kapoor, AIAA Journal 6, 1968), and at most at will
+AT_WILL = 1.0
 #: how much of a mode may be in its own shape: its scale is free
 FREE = 10.0
 #: least spread of a point about such mixtures, the shape of length one, and how many times that of
@@ -27,8 +30,20 @@ WRONG_POINTS, SMALLER = 0.2, 0.5
 KEPT, ROUNDING = 64, 1e-13
 
 
+def stiffness_off(off: FloatArray) -> float:
+    """By how much a stiffness may be off, where frequencies are by so much [ln], float[modes].
+
+    What is wrong of a structure, and mixes its modes, moves frequencies as well.
+    """
+    return float(np.clip(FOLLOWING * np.sqrt(np.mean(off**2)), *WRONG))
+
+
 def mixing(
-    looks: Sequence[Expected], log_f: FloatArray, shapes: FloatArray, number: IntArray
+    looks: Sequence[Expected],
+    log_f: FloatArray,
+    shapes: FloatArray,
+    number: IntArray,
+    wrong: float,
 ) -> FloatArray:
     """How much of each computed mode may be in each measured shape, float[modes, computed].
 
@@ -39,9 +54,10 @@ def mixing(
         log_f: of all computed modes [ln Hz], float[computed].
         shapes: of these for the same modal mass at the points, float[computed, points].
         number: which of them each measured mode is, int[modes].
+        wrong: share by which a stiffness may be off anywhere.
     """
     apart = np.abs(log_f - log_f[number][:, None])
-    sizes = np.minimum(AT_WILL, 0.5 * WRONG / np.maximum(apart, 1e-12))
+    sizes = np.minimum(AT_WILL, 0.5 * wrong / np.maximum(apart, 1e-12))
     sizes[np.arange(len(number)), number] = FREE
     lengths = np.array(
         [np.linalg.norm(shapes[one, look.at]) for one, look in zip(number, looks, strict=True)]

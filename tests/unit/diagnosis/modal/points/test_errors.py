@@ -33,7 +33,7 @@ class Measured:
         looks = [
             Expected(2.0, 0.1, at, one[:seen] / np.linalg.norm(one[:seen])) for one in measured
         ]
-        sizes = mixing(looks, LOG_F, shapes(), NUMBER)
+        sizes = mixing(looks, LOG_F, shapes(), NUMBER, max(WRONG))
         return cls(looks, PointErrors(looks, shapes(), sizes), sizes)
 
     def off(self, recorded: np.ndarray) -> list[np.ndarray]:
