@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.numerics.robust_spread import robust_spread
+from rga.simulation.modal.expected import mac
 
 #: windows on either side of a change, standard deviations from which on it is no chance, and about
 #: how many moments are tried
@@ -18,6 +19,8 @@ EITHER, SURE, SPLITS = 5, 6.0, 100
 LEAST, TIMES = 0.25, 3.0
 #: share of a shape of length one, squared, that must be at a point in a window to say anything
 MOVING = 1e-3
+#: MAC that a quarter of its entries must have with what is predicted of a mode, to be that
+LIKE, QUARTER = 0.7, 0.75
 
 
 @dataclass(frozen=True)
@@ -52,17 +55,17 @@ def point_changes(
     >>> [(one.point, one.window, round(one.times, 1)) for one in found]
     [(2, 10, 0.5)]
     """
-    read = _read(shapes, windows, modes, predicted)
+    reads, weights = _read(shapes, windows, modes, predicted)
     found, sizes = [], []
-    for point, course in enumerate(read.T):
+    for point, (course, weight) in enumerate(zip(reads.T, weights.T, strict=True)):
         seen = np.flatnonzero(np.isfinite(course))
         if len(seen) < 2 * EITHER:
             continue
-        own = course[seen]
-        at, before, after = _split(own)
+        own, told = course[seen], weight[seen]
+        at, before, after = _split(own, told)
         off = own - np.where(np.arange(len(own)) < at, before, after)
-        spread = max(robust_spread(off), 1e-12)
-        error = spread * np.sqrt(np.pi / 2 * (1.0 / at + 1.0 / (len(own) - at)))
+        spread = max(robust_spread(np.sqrt(told) * off), 1e-12)
+        error = spread * np.sqrt(np.pi / 2 * (1.0 / told[:at].sum() + 1.0 / told[at:].sum()))
         sure = abs(after - before) / error
         sizes.append(abs(after - before) / max(abs(before), abs(after), 1e-12))
         if sure > SURE and sizes[-1] > LEAST:
@@ -70,29 +73,29 @@ def point_changes(
     return found if len(found) * TIMES < len(sizes) else []
 
 
-def _split(course: FloatArray) -> tuple[int, float, float]:
-    """Where a course changes the likeliest, and the medians before and behind that.
+def _split(course: FloatArray, weights: FloatArray) -> tuple[int, float, float]:
+    """Where a course changes the likeliest, and the weighted medians before and behind that.
 
     By medians, and sums of what lies about them: a window that lacks a mode, or has another, is no
     change.
     """
     best = (np.inf, 0, 0.0, 0.0)
     for at in range(EITHER, len(course) - EITHER + 1, 1 + len(course) // SPLITS):
-        before, after = float(np.median(course[:at])), float(np.median(course[at:]))
-        about = float(np.abs(course[:at] - before).sum() + np.abs(course[at:] - after).sum())
-        best = min(best, (about, at, before, after))
+        before, after = (_middle(course[own], weights[own]) for own in (slice(at), slice(at, None)))
+        off = np.concatenate([course[:at] - before, course[at:] - after])
+        best = min(best, (float(np.sqrt(weights) @ np.abs(off)), at, before, after))
     return best[1:]
 
 
 def _read(
     shapes: FloatArray, windows: IntArray, modes: IntArray, predicted: FloatArray
-) -> FloatArray:
+) -> tuple[FloatArray, FloatArray]:
     """What each point reads of what is predicted, all modes together, float[windows, points].
 
-    NaN where no mode of a window moves it.
+    NaN where no mode of a window moves it; and how much they do, by which it says something.
     """
     along, squares = np.zeros((2, len(predicted), shapes.shape[1]))
-    for entry in np.flatnonzero(modes >= 0):
+    for entry in np.flatnonzero(_foreseen(shapes, windows, modes, predicted)):
         window = windows[entry]
         shape = predicted[window, modes[entry]]
         seen = np.flatnonzero(np.isfinite(shapes[entry]) & (shape != 0.0))
@@ -103,7 +106,24 @@ def _read(
             weights = (shape[seen] / length) ** 2
             along[window, seen] += times / scale * weights
             squares[window, seen] += weights
-    return np.where(squares > MOVING, along / np.maximum(squares, 1e-300), np.nan)
+    return np.where(squares > MOVING, along / np.maximum(squares, 1e-300), np.nan), squares
+
+
+def _foreseen(
+    shapes: FloatArray, windows: IntArray, modes: IntArray, predicted: FloatArray
+) -> BoolArray:
+    """Entries of modes that look as is predicted of them, before or behind a change."""
+    named = np.flatnonzero(modes >= 0)
+    alike = np.zeros(len(modes))
+    for entry in named:
+        shape = predicted[windows[entry], modes[entry]]
+        seen = np.isfinite(shapes[entry])
+        alike[entry] = mac(shapes[entry, seen], shape[seen]) if seen.any() else 0.0
+    foreseen = np.zeros(len(modes), dtype=bool)
+    for mode in np.unique(modes[named]):
+        own = modes == mode
+        foreseen[own] = np.quantile(alike[own], QUARTER) >= LIKE
+    return foreseen
 
 
 def _middle(values: FloatArray, weights: FloatArray) -> float:

@@ -24,7 +24,7 @@ FREE = 10.0
 #: the point in the middle it is. Measured: 0.003 on simulated bridges, 0.01 on a real footbridge,
 #: whose worst point of 58 lies 2.6 times that off
 LEAST, TIMES = 0.01, 1.5
-#: share of the points that may be wrong, and how much smaller the spread must be without one of them
+#: share of the points that may be wrong, and by how much the spread must shrink without one of them
 WRONG_POINTS, SMALLER = 0.2, 0.5
 #: sets of shapes of which the errors are kept, and share of a square that is rounding
 KEPT, ROUNDING = 64, 1e-13
