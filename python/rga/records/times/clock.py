@@ -357,6 +357,8 @@ def _check_order(clock: Clock, table: Table, where: str) -> None:
     if step[row - 1] == 0:
         what = "the time is the same as in the row before"
         remedy = "take the double row out, or give [time] sampling_rate_hz where stamps are coarse"
+        if "frequency" in table.frame.columns:
+            remedy = "a table of modes, one in each row, goes beside a record: give it as --modal"
     else:
         what, remedy = "the time runs backwards", "sort the rows by time"
         # An autumn night: the hour of summer time comes again.

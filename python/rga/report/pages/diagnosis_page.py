@@ -11,7 +11,7 @@ from rga.diagnosis.member_stresses import member_stresses
 from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.phrases import effect_words, kind_words, not_ruled_out
+from rga.findings.phrases import effect_words, kind_words, not_ruled_out, undecided
 from rga.findings.schema import Cause
 from rga.model import Model
 from rga.model.effects.loads.axle_load import AxleLoad
@@ -42,8 +42,21 @@ VERDICTS = {
     "unknown": "Cause not known",
     "unidentifiable": "These data cannot show it",
 }
+#: the words where structure is left beside causes that have rivals
+OPEN = "More than one cause fits, structure left"
+#: the words in place of those of `unknown`, where nothing speaks against the model
+UNDECIDED = "These data cannot decide"
 #: longer lists are folded
 LONG_LIST = 12
+
+
+def verdict_words(findings: Findings) -> str:
+    """The verdict as a reader is told."""
+    if undecided(findings):
+        return UNDECIDED
+    if findings.verdict == "partial" and all(one.status == "ambiguous" for one in findings.causes):
+        return OPEN
+    return VERDICTS[findings.verdict]
 
 
 def page(findings: Findings) -> dict[str, Any]:
@@ -60,7 +73,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "fonts": FONTS,
         "model_name": model.name,
         "about": [(what, said) for what, said in model.about.model_dump().items() if said],
-        "verdict": VERDICTS[findings.verdict],
+        "verdict": verdict_words(findings),
         "verdict_key": findings.verdict,
         "headline": headline,
         "rest": " ".join(rest),

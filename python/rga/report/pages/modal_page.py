@@ -6,14 +6,11 @@ from typing import Any
 from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.modal_arrays import ModalArrays
-from rga.findings.phrases import effect_words, undecided
+from rga.findings.phrases import effect_words
 from rga.quantities import number
-from rga.report.pages.diagnosis_page import VERDICTS, provenance
+from rga.report.pages.diagnosis_page import provenance, verdict_words
 from rga.report.pages.modes_section import modes_section
 from rga.report.text.actions import actions
-
-#: the verdict in place of that of `unknown`, where nothing speaks against the model
-UNDECIDED = "These data cannot decide"
 
 
 def modal_page(findings: Findings, account: ModalArrays) -> dict[str, Any]:
@@ -25,7 +22,7 @@ def modal_page(findings: Findings, account: ModalArrays) -> dict[str, Any]:
         "headline": headline,
         "rest": " ".join(rest),
         "verdict": findings.verdict,
-        "verdict_words": UNDECIDED if undecided(findings) else VERDICTS[findings.verdict],
+        "verdict_words": verdict_words(findings),
         "doubts": [one for one in findings.unexplained.looks_like.split("; ") if one],
         "warnings": findings.warnings,
         "causes": [
