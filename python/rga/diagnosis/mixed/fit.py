@@ -19,6 +19,9 @@ from rga.diagnosis.search.linearised import Problem
 from rga.errors import InputError
 from rga.simulation import Simulator
 
+#: what a record tells of a parameter, over its prior, that is nothing but rounding
+SAYS_NOTHING = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class MixedFit:
@@ -76,14 +79,24 @@ class MixedEvidence:
             hypotheses: fitted together.
             start: coordinates to begin with, one a parameter.
         """
-        return self.beside(fit(self.problem, self.base, hypotheses, start))
+        return self.beside(fit(self.problem, self.base, hypotheses, start), start)
 
-    def beside(self, static: Fit) -> MixedFit:
-        """The same, where the fit to the record is known."""
+    def beside(self, static: Fit, start: Sequence[float] | FloatArray | None = None) -> MixedFit:
+        """The same, where the fit to the record is known.
+
+        Args:
+            static: that fit.
+            start: coordinates from which those begin of which the record says nothing; None: from
+                what is usual.
+        """
         shown = self.on_modes(static.hypotheses)
         own = _coordinates(static.hypotheses, shown)
         of_modes = [static.hypotheses[number] for number in shown]
-        modal = fitted(self.likelihood, of_modes, static.z[own])
+        begun = static.z
+        if start is not None:
+            told = np.diag(static.information) > 1.0 + SAYS_NOTHING
+            begun = np.where(told, static.z, start)
+        modal = fitted(self.likelihood, of_modes, begun[own])
         if not (np.isfinite(static.log_evidence) and np.isfinite(modal.log_evidence)):
             return MixedFit(static, modal, static, np.inf, -np.inf)
         alone, count = static, len(static.z)

@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.mixed.fit import MixedEvidence, MixedFit
 from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses, prospects
 from rga.diagnosis.modal.fit import shown_by
 from rga.diagnosis.modal.search import (
+    EXCHANGED,
     UNLIKELY,
     borne,
     likeliest_onset,
@@ -93,13 +95,16 @@ def _searched(
         if best.log_evidence - current.log_evidence < naming.log_odds:
             break
         current = _pruned(best, evidence, naming.log_odds)
-    known = found.fit.hypotheses
-    rivals, odds = [], []
-    for number in range(len(current.hypotheses)):
-        progress("weighing rivals", number / len(current.hypotheses))
-        rest = _without(current, evidence, number)
-        odds.append(current.log_evidence - rest.log_evidence)
-        rivals.append(_rivals(current, rest, number, evidence, screening, candidates, known))
+    standing = found.fit.hypotheses, screening, candidates
+    odds, rivals = _weighed(current, evidence, standing, progress)
+    for _ in range(EXCHANGED):
+        beside = [fit for ranked in rivals for fit, _ in ranked]
+        better = max(beside, key=log_evidence, default=current)
+        if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
+            break
+        # What stands for a cause is better beside those that came after it.
+        current = _pruned(better, evidence, naming.log_odds)
+        odds, rivals = _weighed(current, evidence, standing, progress)
     joined = Found(
         found.problem,
         current.static,
@@ -111,6 +116,29 @@ def _searched(
         tuple(odds),
     )
     return MixedFound(joined, evidence, current, tuple(map(tuple, rivals)), first)
+
+
+def _weighed(
+    current: MixedFit,
+    evidence: MixedEvidence,
+    standing: tuple[Sequence[Hypothesis], Screening, Sequence[Hypothesis]],
+    progress: Progress,
+) -> tuple[list[float], list[list[tuple[MixedFit, float]]]]:
+    """Log-odds of each cause against leaving it out, and what could stand in its place.
+
+    Args:
+        current: the causes.
+        evidence: of record and modes.
+        standing: what the record named; what could be wrong by the record, and by the modes.
+        progress: called with what is done and the share of it.
+    """
+    odds, rivals = [], []
+    for number in range(len(current.hypotheses)):
+        progress("weighing rivals", number / len(current.hypotheses))
+        rest = _without(current, evidence, number)
+        odds.append(current.log_evidence - rest.log_evidence)
+        rivals.append(_rivals(current, rest, number, evidence, standing))
+    return odds, rivals
 
 
 def log_evidence(one: MixedFit) -> float:
@@ -187,7 +215,12 @@ def _of_record(
 def _without(current: MixedFit, evidence: MixedEvidence, number: int) -> MixedFit:
     """The fit anew without one of its hypotheses."""
     alone = without_cause(evidence.problem, evidence.base, current.alone, number)
-    return evidence.beside(alone)
+    return evidence.beside(alone, _others(current, number))
+
+
+def _others(current: MixedFit, number: int) -> FloatArray:
+    """Coordinates of all hypotheses but one."""
+    return np.delete(current.z, current.static.slices()[number])
 
 
 def _pruned(current: MixedFit, evidence: MixedEvidence, least: float) -> MixedFit:
@@ -206,17 +239,20 @@ def _rivals(
     rest: MixedFit,
     number: int,
     evidence: MixedEvidence,
-    screening: Screening,
-    candidates: Sequence[Hypothesis],
-    known: Sequence[Hypothesis],
+    standing: tuple[Sequence[Hypothesis], Screening, Sequence[Hypothesis]],
 ) -> list[tuple[MixedFit, float]]:
     """What could stand in the place of a cause beside the others, with how far it is behind.
 
     By its evidence; for what the modes named, and for what moves all modes alike, by the data alone
     where that is less: what is usual of moduli, masses and clocks must not tell them apart.
     """
+    known, screening, candidates = standing
     own = current.hypotheses[number]
-    several = [evidence.beside(one.fit) for one in _of_record(current, number, evidence, screening)]
+    others = _others(current, number)
+    several = [
+        evidence.beside(one.fit, [*others, *one.fit.z[len(others) :]])
+        for one in _of_record(current, number, evidence, screening)
+    ]
     if evidence.on_modes([own]):
         several += _fitted(
             evidence, rest, _promising(evidence, rest, candidates, lambda stage, done: None)

@@ -25,7 +25,7 @@ FREE = 10.0
 #: whose worst point of 58 lies 2.6 times that off
 LEAST, TIMES = 0.01, 1.5
 #: share of the points that may be wrong, and by how much the spread must shrink without one of them
-WRONG_POINTS, SMALLER = 0.2, 0.5
+WRONG_POINTS, SMALLER = 0.1, 0.5
 #: sets of shapes of which the errors are kept, and share of a square that is rounding
 KEPT, ROUNDING = 64, 1e-13
 
@@ -124,16 +124,16 @@ class PointErrors:
     def _in_the_middle(self, shapes: FloatArray, sizes: FloatArray) -> float:
         """How far the point in the middle lies off what all others say of it.
 
-        A point that is wrong says wrong things of all: without it they agree much better.
+        A point that is wrong says wrong things of all: without it, and without no other, they
+        agree much better.
         """
-        points = np.unique(np.concatenate([look.at for look in self._looks]))
-        kept = points
+        kept = np.unique(np.concatenate([look.at for look in self._looks]))
         least = self._middle_of(kept, shapes, sizes)
-        for _ in range(int(WRONG_POINTS * len(points))):
+        for _ in range(int(WRONG_POINTS * len(kept))):
             without = [kept[kept != one] for one in kept]
             spreads = [self._middle_of(some, shapes, sizes) for some in without]
-            best = int(np.argmin(spreads))
-            if spreads[best] > SMALLER * least:
+            best, second = np.argsort(spreads)[:2]
+            if spreads[best] > SMALLER * min(least, spreads[second]):
                 break
             least, kept = spreads[best], without[best]
         return least

@@ -102,8 +102,17 @@ def test_a_mixture_of_modes_is_no_error_of_a_point_and_a_turned_sensor_is() -> N
     assert known @ known < 3.0
     by_point = (off.reshape(len(NUMBER), POINTS) ** 2).sum(0)
     assert by_point.argmax() == 4
-    assert by_point[4] > 20.0
-    assert np.delete(by_point, 4).max() < 3.0
+    # What is left of it beside mixtures is about it, and by far the most there.
+    assert by_point[4] > max(100.0, 3.0 * np.delete(by_point, 4).max())
+
+
+def test_a_point_that_is_wrong_does_not_widen_what_all_may_be_off() -> None:
+    noise = 0.002 * np.random.default_rng(3).standard_normal((len(NUMBER), POINTS))
+    right = Measured.of(shapes()[NUMBER] + noise)
+    wrong = Measured.of(turned(0.5)[NUMBER] + noise)
+    assert wrong.errors.spread < 1.5 * right.errors.spread
+    off = np.concatenate(wrong.off(shapes()))
+    assert off @ off > 10.0 * off.size
 
 
 def test_where_points_are_few_mixtures_explain_all() -> None:
@@ -118,5 +127,5 @@ def test_modes_mix_by_what_is_wrong_over_the_distance_of_their_frequencies() -> 
         length = np.linalg.norm(shapes()[number])
         for other in range(COMPUTED):
             apart = abs(LOG_F[other] - LOG_F[number])
-            share = FREE if other == number else min(1.0, WRONG / (2.0 * apart))
+            share = FREE if other == number else min(1.0, max(WRONG) / (2.0 * apart))
             np.testing.assert_allclose(found.sizes[mode, other], share / length, rtol=1e-12)
