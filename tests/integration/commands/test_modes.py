@@ -146,6 +146,16 @@ def test_a_record_and_modes_are_diagnosed_together(rga: Callable[..., Any], tmp_
     assert "Measured over simulated" in report
 
 
+def test_a_table_of_modes_is_no_record(rga: Callable[..., Any], tmp_path: Path) -> None:
+    model, record = measured(0, Hidden())
+    write_model(model, tmp_path / "model.json")
+    (tmp_path / "modes.csv").write_text(written_modes(record))
+    files = tmp_path / "model.json", tmp_path / "modes.csv"
+    done = rga("diagnose", *files, "-o", tmp_path / "found")
+    assert done.code == 2
+    assert "give it as --modal" in done.err
+
+
 def test_modes_that_decide_nothing_speak_against_nothing(
     rga: Callable[..., Any], tmp_path: Path
 ) -> None:

@@ -44,6 +44,15 @@ def test_what_may_be_added_goes_with_what_stands_there(
     assert prior.value(1.0) == spread
 
 
+def test_something_heavy_may_stand_on_any_node() -> None:
+    places = list(AddedMass.places(mast()))
+    assert {"node": "foot"} in places
+    assert {"node": "head"} in places
+    (prior,) = AddedMass.priors(mast(), {"node": "foot"}).values()
+    # A vehicle of five tonnes is unusual and possible.
+    assert 3.0 < prior.z(5000.0) < 4.0
+
+
 def weighed(model: Model) -> tuple[float, float]:
     """Mass along the member [kg/m] and on the head [kg], effects put on."""
     structure = build_structure(model).copy()

@@ -12,6 +12,7 @@ import polars as pl
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.records.mapping import TimeColumns
+from rga.records.modal.columns import FREQUENCY
 from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
 from rga.records.times.counted import COMPACT, COUNTED, SECONDS, looks_like
@@ -357,8 +358,8 @@ def _check_order(clock: Clock, table: Table, where: str) -> None:
     if step[row - 1] == 0:
         what = "the time is the same as in the row before"
         remedy = "take the double row out, or give [time] sampling_rate_hz where stamps are coarse"
-        if "frequency" in table.frame.columns:
-            remedy = "a table of modes, one in each row, goes beside a record: give it as --modal"
+        if FREQUENCY in table.frame.columns:
+            remedy = f"is this a table of modes, one in each row? Give it as --modal; else {remedy}"
     else:
         what, remedy = "the time runs backwards", "sort the rows by time"
         # An autumn night: the hour of summer time comes again.
