@@ -153,7 +153,7 @@ def test_a_table_of_modes_is_no_record(rga: Callable[..., Any], tmp_path: Path) 
     files = tmp_path / "model.json", tmp_path / "modes.csv"
     done = rga("diagnose", *files, "-o", tmp_path / "found")
     assert done.code == 2
-    assert "give it as --modal" in done.err
+    assert "Give it as --modal" in done.err
 
 
 def test_modes_that_decide_nothing_speak_against_nothing(
