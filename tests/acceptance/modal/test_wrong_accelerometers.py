@@ -24,6 +24,10 @@ thorough = pytest.mark.thorough
 SEEDS = [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))]
 Spoil = Callable[[ModalRecord], ModalRecord]
 POINT, OTHER = "b3n z", "t3n y"
+TWELVE = (
+    "b1n y", "b3n y", "b5n y", "b1n z", "b3n z", "b5n z", "b1s z", "b3s z", "b5s z", "t1n y", "t3n y",
+    "b3s y",
+)  # fmt: skip
 EIGHT = ("b1n y", "b1n z", "b3n y", "b3n z", "b5n z", "t3n y", "b3s z", "t1s y")
 
 
@@ -97,6 +101,20 @@ def test_one_that_shows_half_is_named_with_its_factor(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(
+    "point", ["b3s y", *(pytest.param(p, marks=thorough) for p in TWELVE[:-1])]
+)
+def test_one_that_shows_half_is_named_among_few(seed: int, point: str) -> None:
+    """Of few points one that is wrong is a large share of what can be said of all."""
+    model, record = measured(seed, Hidden(), modes=4)
+    findings = diagnose_modes(model, scaled(at_some(record, TWELVE), {point: 0.5}))
+    assert findings.verdict == "named"
+    assert places(findings) == [("sensor_gain", point)]
+    low, high = findings.causes[0].effect["factor"]["ci90"]
+    assert 0.3 < low < 0.5 < high < 0.7
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_one_that_shows_too_much_is_named_with_its_factor(seed: int) -> None:
     model, record = measured(seed, Hidden())
     findings = diagnose_modes(model, scaled(record, {POINT: 1.5}))
@@ -128,7 +146,7 @@ def test_two_that_are_exchanged_are_named(seed: int) -> None:
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 6))])
 def test_of_right_ones_nothing_is_named(seed: int) -> None:
     model, record = measured(seed, Hidden())
-    for some in (record, at_some(record, EIGHT)):
+    for some in (record, at_some(record, TWELVE), at_some(record, EIGHT)):
         findings = diagnose_modes(model, some)
         assert findings.causes == []
         assert findings.verdict == "nothing_wrong"
