@@ -25,8 +25,8 @@ SEEDS = [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))]
 Spoil = Callable[[ModalRecord], ModalRecord]
 POINT, OTHER = "b3n z", "t3n y"
 TWELVE = (
-    "b1n y", "b3n y", "b5n y", "b1n z", "b3n z", "b5n z", "b1s z", "b3s z", "b5s z", "t1n y", "t3n y",
-    "b3s y",
+    "b1n y", "b3n y", "b5n y", "b1n z", "b3n z", "b5n z",
+    "b1s z", "b3s z", "b5s z", "t1n y", "t3n y", "b3s y",
 )  # fmt: skip
 EIGHT = ("b1n y", "b1n z", "b3n y", "b3n z", "b5n z", "t3n y", "b3s z", "t1s y")
 
