@@ -193,23 +193,6 @@ def test_mass_is_not_told_from_modulus_by_modes_alone(seed: int) -> None:
     assert "truck of known mass" in findings.causes[0].separated_by
 
 
-def load_on_top() -> Hidden:
-    return Hidden(mass={"t3n": 3000.0}, onset=ONSET)
-
-
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))])
-def test_something_heavy_is_found_where_the_model_states_no_mass(seed: int) -> None:
-    findings = diagnosed(seed, load_on_top)
-    first, *others = findings.causes
-    # The joints of the truth are stiff in earnest.
-    assert {one.effect["kind"] for one in others} <= {"joint_rigidity"}
-    assert first.onset == BEGUN
-    own = next(one for one in (first.effect, *first.rivals) if one.get("node") == "t3n")
-    low, high = own["mass"]["ci90"]
-    assert low < 3000.0 < high
-    assert findings.gap.after < 0.2 * findings.gap.before
-
-
 GROUPS = {member["groups"][0] for member in bridge()["members"].values()}
 #: of a tenth of what the bridge weighs, on both of its sides
 TRUCK = Parked({"b3n": 2000.0, "b3s": 2000.0}, (20, 40))
