@@ -212,9 +212,7 @@ def with_a_truck(seed: int, make: Callable[[], Hidden]) -> Findings:
 
 
 @pytest.mark.parametrize("make", [heavier_always, softer])
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 15))]
-)
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))])
 def test_a_parked_truck_tells_mass_from_modulus(make: Callable[[], Hidden], seed: int) -> None:
     heavy = {"added_mass", "mass_factor"}
     alone, told = diagnosed(seed, make), with_a_truck(seed, make)

@@ -54,7 +54,8 @@ def verdict_words(findings: Findings) -> str:
     """The verdict as a reader is told."""
     if undecided(findings):
         return UNDECIDED
-    if findings.verdict == "partial" and all(one.status == "ambiguous" for one in findings.causes):
+    states = {one.status for one in findings.causes}
+    if findings.verdict == "partial" and states == {"ambiguous"}:
         return OPEN
     return VERDICTS[findings.verdict]
 
