@@ -193,6 +193,29 @@ def test_mass_is_not_told_from_modulus_by_modes_alone(seed: int) -> None:
     assert "truck of known mass" in findings.causes[0].separated_by
 
 
+def load_on_top() -> Hidden:
+    return Hidden(mass={"t3n": 3000.0}, onset=ONSET)
+
+
+def lamp_on_top() -> Hidden:
+    return Hidden(mass={"t3n": 1000.0}, onset=ONSET)
+
+
+@pytest.mark.parametrize("make", [load_on_top, pytest.param(lamp_on_top, marks=thorough)])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))])
+def test_something_heavy_is_found_where_the_model_states_no_mass(
+    make: Callable[[], Hidden], seed: int
+) -> None:
+    findings = diagnosed(seed, make)
+    (first,) = findings.causes
+    assert first.onset == BEGUN
+    near = {one["node"]: one for one in (first.effect, *first.rivals)}
+    assert set(near) <= {"t3n", "t3s"}
+    low, high = near["t3n"]["mass"]["ci90"]
+    assert low < make().mass["t3n"] < high
+    assert findings.gap.after < 0.7 * findings.gap.before
+
+
 GROUPS = {member["groups"][0] for member in bridge()["members"].values()}
 #: of a tenth of what the bridge weighs, on both of its sides
 TRUCK = Parked({"b3n": 2000.0, "b3s": 2000.0}, (20, 40))

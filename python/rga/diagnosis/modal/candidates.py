@@ -268,10 +268,10 @@ def _worth_simulating(
     and have slopes of their own together alone: by these they are ranked as well.
     """
     trials = likelihood.trials
-    strain, kinetic = trials.energies()
+    by_stiffness, by_mass = trials.slopes()
     model = trials.model
     members = {name: number for number, name in enumerate(model.members)}
-    nodes = {name: len(members) + number for number, name in enumerate(model.nodes)}
+    nodes = {name: number for number, name in enumerate(model.nodes)}
     at_once = likelihood.of_steady(np.eye(len(likelihood.readings.modes)))
     modes = np.arange(len(likelihood.readings.modes))
     alike = np.eye(len(modes))
@@ -281,13 +281,13 @@ def _worth_simulating(
     slopes: dict[str, list[tuple[int, FloatArray]]] = {}
     for number, one in enumerate(candidates):
         place = one.place
-        heavy = place.get("node") if one.name == "added_mass" else None
-        if one.name == "mass_factor" and isinstance(place.get("mass"), str):
-            heavy = model.masses[place["mass"]].node
         if isinstance(place.get("member"), str):
-            slope = strain[:, members[place["member"]]]
-        elif isinstance(heavy, str):
-            slope = kinetic[:, nodes[heavy]]
+            slope = by_stiffness[:, members[place["member"]]]
+        elif one.name == "added_mass" and isinstance(place.get("node"), str):
+            # What is usual there, and not what stands there: most nodes have no mass of their own.
+            slope = one.priors["mass"].value(1.0) * by_mass[:, nodes[place["node"]]]
+        elif isinstance(place.get("mass"), str) and (stated := model.masses[place["mass"]]).node:
+            slope = (stated.mass or 0.0) * by_mass[:, nodes[stated.node]]
         else:
             continue
         slopes.setdefault(one.name, []).append((number, slope))

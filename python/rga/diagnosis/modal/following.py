@@ -174,7 +174,7 @@ def _promising(
     """Hypotheses that would explain most by slopes, with where a fit of each begins."""
     likelihood = usual.likelihood.with_weather(ABOUT * usual.likelihood.weather)
     trials = likelihood.trials
-    strain, _ = trials.energies()
+    strain, _ = trials.slopes()
     groups = trials.model.groups
     members = {name: number for number, name in enumerate(trials.model.members)}
     (context,) = contexts_of_temperature(trials.model)

@@ -180,20 +180,20 @@ class ModalTrials(Generic[AnyWindows]):
             found[own] = self._state(acting).at_points
         return found
 
-    def energies(self) -> tuple[FloatArray, FloatArray]:
-        """Shares of members in the modes: derivatives of ln f by logarithms of what they are.
+    def slopes(self) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of ln f by what members and nodes have, without the model's more effects.
 
         Returns:
-            Of the stiffness of members, then of springs, float[modes, members + springs]; of the
-            masses of members, then of nodes, float[modes, members + nodes], without the model's
-            more effects.
+            By the logarithm of the stiffness of members, then of springs,
+            float[modes, members + springs]; by a mass on nodes [1/kg], float[modes, nodes].
         """
         structure = self._structures[self._middle]
         found = self._state([])
         squares, shapes, *_ = self._modes(structure)
-        strain, kinetic = _core.modal_energies(structure.arrays, structure.masses, shapes)
+        strain, _ = _core.modal_energies(structure.arrays, structure.masses, shapes)
         own = squares[found.number][:, None]
-        return 0.5 * strain[found.number] / own, -0.5 * kinetic[found.number]
+        moving = shapes[found.number, : len(self.model.nodes), :3]
+        return 0.5 * strain[found.number] / own, -0.5 * (moving**2).sum(axis=2)
 
     def _state(self, effects: Sequence[Effect]) -> Prediction:
         """The modes where effects act all the time, under the contexts that stand for all."""

@@ -32,6 +32,15 @@ def test_shapes_are_turned_onto_each_other() -> None:
     assert noise < 1e-12
 
 
+@pytest.mark.parametrize("points", [3, 4, 7])
+def test_a_shape_that_is_the_same_in_all_windows_has_no_noise(points: int) -> None:
+    """MAC of what is alike is rounded to more than one as well."""
+    for shape in np.random.default_rng(points).normal(size=(50, points)):
+        mean, _, noise = mean_shape(np.tile(shape, (10, 1)), shape)
+        np.testing.assert_allclose(np.abs(mean @ shape), np.linalg.norm(shape))
+        assert 0.0 <= noise < 1e-12
+
+
 def test_without_shapes_nothing_is_said_of_them() -> None:
     mean, at, noise = mean_shape(np.full((3, 2), np.nan), np.array([1.0, 1.0]))
     assert (len(mean), len(at), noise) == (0, 0, 0.0)

@@ -1,5 +1,7 @@
 """Sensors at points that read otherwise from some window on, and such that only scatter."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,35 @@ def entries(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("seed", range(20))
 def test_of_sound_sensors_nothing_is_said(seed: int) -> None:
     assert point_changes(*entries(seed)) == []
+
+
+def still_points(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The same at points that hardly move, which read noise; the first mode is often lacking."""
+    _, windows, modes, predicted = entries(seed)
+    draw = np.random.default_rng(seed + 100)
+    predicted[:, 0, 3:] *= 0.03
+    predicted[:, 1:, 5] *= 0.03
+    shapes = predicted[windows, modes] + 0.03 * draw.normal(size=(len(windows), POINTS))
+    found = (modes > 0) | (draw.random(len(windows)) < np.where(windows < 20, 0.9, 0.3))
+    return shapes[found], windows[found], modes[found], predicted
+
+
+def one_mode_of_another_shape(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The same where the model is wrong of one mode, which is found in late windows alone."""
+    shapes, windows, modes, predicted = entries(seed)
+    found = (modes > 0) | (windows >= 20)
+    draw = np.random.default_rng(seed + 200)
+    predicted[:, 0] = draw.normal(size=POINTS)
+    return shapes[found], windows[found], modes[found], predicted
+
+
+@pytest.mark.parametrize("make", [still_points, one_mode_of_another_shape])
+@pytest.mark.parametrize("seed", range(20))
+def test_points_that_hardly_move_and_a_wrong_mode_are_no_change(
+    make: Callable[[int], tuple[np.ndarray, ...]], seed: int
+) -> None:
+    shapes, windows, modes, predicted = make(seed)
+    assert point_changes(shapes, windows, modes, predicted) == []
 
 
 @pytest.mark.parametrize("times", [0.0, 0.5, -1.0])
