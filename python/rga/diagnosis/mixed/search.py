@@ -22,6 +22,7 @@ from rga.diagnosis.search.laplace import Alternative
 from rga.diagnosis.search.screening import Screening
 from rga.diagnosis.search.stepwise import Found, alternatives_of, without_cause
 from rga.findings.criteria import Criteria
+from rga.findings.criteria.causes import NamingCriteria
 
 #: log-odds that an exchange must gain
 WORTH_EXCHANGE = 1.0
@@ -79,22 +80,9 @@ def _searched(
     criteria: Criteria,
     progress: Progress,
 ) -> MixedFound:
-    current = _exchanged(evidence.beside(found.fit), evidence, screening)
-    current = _begun(current, evidence)
     candidates = modal_hypotheses(evidence.likelihood.trials)
     naming = criteria.naming
-    modes = len(evidence.likelihood.readings.modes)
-    of_record = len(current.hypotheses)
-    first = promising = _promising(evidence, current, candidates, progress)
-    for number in range(naming.most_causes - of_record):
-        if number:
-            left = borne(candidates, current.hypotheses[of_record:], modes)
-            promising = _promising(evidence, current, left, progress)
-        fits = _fitted(evidence, current, promising)
-        best = max(fits, key=log_evidence, default=current)
-        if best.log_evidence - current.log_evidence < naming.log_odds:
-            break
-        current = _pruned(best, evidence, naming.log_odds)
+    current, evidence, first = _grown(found, evidence, (screening, candidates), naming, progress)
     standing = found.fit.hypotheses, screening, candidates
     odds, rivals = _weighed(current, evidence, standing, progress)
     for _ in range(EXCHANGED):
@@ -116,6 +104,47 @@ def _searched(
         tuple(odds),
     )
     return MixedFound(joined, evidence, current, tuple(map(tuple, rivals)), first)
+
+
+def _grown(
+    found: Found,
+    evidence: MixedEvidence,
+    possible: tuple[Screening, Sequence[Hypothesis]],
+    naming: NamingCriteria,
+    progress: Progress,
+) -> tuple[MixedFit, MixedEvidence, list[ModalProspect]]:
+    """The causes of a record, and those of the modes added one by one as long as they are worth it.
+
+    With the evidence, of which the error of the model may be larger, and the prospects beside the
+    causes of the record.
+
+    Args:
+        found: the causes that the record names.
+        evidence: of record and modes.
+        possible: what could be wrong by the record, and by the modes.
+        naming: what a cause must be worth, and how many there may be.
+        progress: called with what is done and the share of it.
+    """
+    screening, candidates = possible
+    current = _exchanged(evidence.beside(found.fit), evidence, screening)
+    current = _begun(current, evidence)
+    modes = len(evidence.likelihood.readings.modes)
+    of_record = len(current.hypotheses)
+    first = promising = _promising(evidence, current, candidates, progress)
+    for number in range(naming.most_causes - of_record):
+        if number:
+            left = borne(candidates, current.hypotheses[of_record:], modes)
+            promising = _promising(evidence, current, left, progress)
+        fits = _fitted(evidence, current, promising)
+        best = max(fits, key=log_evidence, default=current)
+        if best.log_evidence - current.log_evidence < naming.log_odds:
+            break
+        current = _pruned(best, evidence, naming.log_odds)
+    shown = shown_by(current.modal)
+    if shown.level > evidence.likelihood.level:
+        # Before rivals are weighed, which takes longest.
+        return _grown(found, replace(evidence, likelihood=shown), possible, naming, progress)
+    return current, evidence, first
 
 
 def _weighed(

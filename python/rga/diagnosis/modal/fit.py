@@ -20,8 +20,9 @@ from rga.model.parameter import NORMAL_90
 
 #: difference of a derivative by z; steps, and how often one is shortened
 STEP, STEPS, SHORTENED = 1e-3, 12, 6
-#: bounds of z and of a step in it, and the gain that is worth another
-FARTHEST, LONGEST, ENOUGH = 8.0, 2.0, 1e-3
+#: bounds of z and of a step in it, and what one must gain, by slopes and in truth, to be followed
+#: by another
+FARTHEST, LONGEST, PROMISED, GAINED = 8.0, 2.0, 1e-3, 0.05
 #: where the data alone decide: weight of the prior, and bounds of z
 UNWEIGHED, ANYWHERE = 1e-4, 60.0
 #: what the loss rises by to the ends of a 90 % interval, what share of it slopes must keep, and
@@ -173,7 +174,7 @@ def _fitted(
         signatures = found
         slope = signatures @ residual - usual * z
         move = np.linalg.solve(signatures @ signatures.T + usual * np.eye(len(z)), slope)
-        if float(move @ slope) < ENOUGH:
+        if float(move @ slope) < PROMISED:
             break
         move *= min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
         for _ in range(SHORTENED):
@@ -189,7 +190,7 @@ def _fitted(
             break
         gained, loss = loss - cost, cost
         z, prediction, residual = there, other, left
-        if gained < ENOUGH:
+        if gained < GAINED:
             break
     return _weighed(likelihood, hypotheses, z, prediction, residual, signatures)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.diagnosis.modal.candidates import BEGINNINGS, ModalProspect, prospects
-from rga.diagnosis.modal.fit import ModalFit, fitted, least_loss, predicted
+from rga.diagnosis.modal.fit import ModalFit, fitted, least_loss, predicted, shown_by
 from rga.diagnosis.modal.likelihood import ModalLikelihood
 from rga.diagnosis.modal.separating import COMMON
 from rga.diagnosis.search.hypothesis import Hypothesis
@@ -89,6 +89,10 @@ def _grown(
         if best.log_evidence - current.log_evidence < naming.log_odds:
             break
         current = _pruned(best, naming.log_odds)
+    shown = shown_by(current)
+    if shown.level > likelihood.level:
+        # Before rivals are weighed, which takes longest.
+        return _grown(fitted(shown, [], []), candidates, criteria, progress)
     return current, first
 
 

@@ -113,10 +113,14 @@ class PointErrors:
 
     def _of(self, shape: FloatArray, parts: FloatArray) -> tuple[FloatArray, float]:
         """What mixtures of parts of random size leave of a shape, and half the log determinant."""
-        squares, along = np.linalg.eigh(parts @ parts.T / self.spread**2)
+        # Of many modes at few points the points are the smaller side.
+        many = len(parts) > len(shape)
+        side = (parts.T if many else parts) / self.spread
+        squares, within = np.linalg.eigh(side @ side.T)
         some = squares > ROUNDING * squares[-1:]
-        along, squares = along[:, some], squares[some]
-        within = (parts.T @ along) / (self.spread * np.sqrt(squares))
+        squares, within = squares[some], within[:, some]
+        if not many:
+            within = side.T @ (within / np.sqrt(squares))
         shrunk = 1.0 - 1.0 / np.sqrt(1.0 + squares)
         white = (shape - within @ (shrunk * (within.T @ shape))) / self.spread
         return white, 0.5 * float(np.log1p(squares).sum())
