@@ -80,16 +80,27 @@ def doubtful_windows(readings: ModalReadings) -> list[str]:
 
 
 def unlike_modes(readings: ModalReadings) -> list[str]:
-    """In words: that something else swings where modes are expected."""
+    """In words: that something else swings where modes are expected, or far from there."""
+    told = []
     several = [name for name, share in readings.unlike.items() if share > UNLIKE]
-    if not several:
-        return []
-    words = (
-        f"where {counted(len(several), 'mode')} ({', '.join(several)}) should be, something swings "
-        f"in another shape, in up to {max(readings.unlike.values()):.0%} of the windows: look for "
-        "points that are exchanged, turned or named wrongly, or give the shapes that were measured"
-    )
-    return [words]
+    if several:
+        told.append(
+            f"where {counted(len(several), 'mode')} ({', '.join(several)}) should be, something "
+            f"swings in another shape, in up to {max(readings.unlike.values()):.0%} of the "
+            "windows: look for points that are exchanged, turned or named wrongly, or give the "
+            "shapes that were measured"
+        )
+    stray = readings.stray
+    if stray is not None and stray.share > UNLIKE:
+        one = len(stray.lacking) == 1
+        told.append(
+            f"{counted(len(stray.lacking), 'mode')} ({', '.join(stray.lacking)}) "
+            f"{'is' if one else 'are'} hardly ever found, and what swings at "
+            f"{short(stray.frequency)} Hz in {stray.share:.0%} of the windows is none of the modes "
+            f"expected: it may be {'that mode' if one else 'one of them'}, moved far. Give a "
+            "larger `within`, or add what swings there to the modes of the model"
+        )
+    return told
 
 
 def changing_points(likelihood: ModalLikelihood, causes: Mapping[str, Effect]) -> list[str]:

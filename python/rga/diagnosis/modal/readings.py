@@ -18,7 +18,7 @@ from rga.simulation.modal.expected import FEWEST, Expected, mac
 from rga.simulation.modal.looks import unclear_looks
 from rga.simulation.modal.simulator import ModalSimulator
 from rga.simulation.modal.units import check_units
-from rga.simulation.modal.windows import NONE, NamedModes, named_modes
+from rga.simulation.modal.windows import NONE, NamedModes, Stray, named_modes, stray_of
 
 #: scatter of a frequency of which nothing is known: one test repeated gives half to two per cent
 UNKNOWN_SCATTER = 0.01
@@ -77,6 +77,7 @@ class ModalReadings(ModalWindows):
         far_out: that are left out, as their frequency is far off that of the mode about then.
         unlike: of expected modes, share of the windows in which they were not found and something
             else swings about where they are expected.
+        stray: what may be a mode that was hardly ever found.
         uncovered: windows left out, as a context is not known then.
         unclear: in words: modes of the model that its points do not see, or do not tell apart.
         cost: of the pairs in all windows, as a negative logarithm of a probability.
@@ -96,6 +97,7 @@ class ModalReadings(ModalWindows):
     unnamed: int
     far_out: int
     unlike: dict[str, float]
+    stray: Stray | None
     uncovered: int
     unclear: tuple[str, ...]
     cost: float
@@ -190,6 +192,7 @@ class ModalReadings(ModalWindows):
             unnamed=int((named.mode == NONE).sum()),
             far_out=int(far_out.sum()),
             unlike=_unlike_modes(named, record, expected),
+            stray=stray_of(named, record, expected),
             uncovered=uncovered,
             unclear=unclear_looks(expected),
             cost=named.cost,

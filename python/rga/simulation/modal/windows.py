@@ -20,6 +20,9 @@ from rga.simulation.modal.wrong_points import unlike_but_for_points
 MOST_COST = 8.0
 #: number of an entry that is none of the expected modes, and of one that may be either of two
 NONE, OPEN = -1, -2
+#: share of the windows in which a mode is hardly ever found; by how much frequencies of one thing
+#: differ, and by how much the mode may have moved [ln]
+HARDLY, STEADY, MOVED = 0.1, 0.03, np.log(2.0)
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,43 @@ class NamedModes:
     doubtful: IntArray
     in_doubt: tuple[str, ...]
     cost: float
+
+
+@dataclass(frozen=True)
+class Stray:
+    """What swings and is none of the modes expected, while some of these are hardly ever found.
+
+    Attributes:
+        lacking: the modes.
+        frequency: at which it swings [Hz].
+        share: of the windows in which it does.
+    """
+
+    lacking: tuple[str, ...]
+    frequency: float
+    share: float
+
+
+def stray_of(
+    named: NamedModes, record: ModalRecord, expected: Mapping[str, Expected]
+) -> Stray | None:
+    """What is found most often of all that may be a mode that is lacking, moved far away."""
+    found = {
+        name: len(np.unique(record.windows[named.mode == number]))
+        for number, name in enumerate(expected)
+    }
+    lacking = [name for name in expected if found[name] < HARDLY * len(named.time)]
+    log_f = np.log(record.frequency)
+    near = np.log([expected[name].near for name in lacking])
+    free = (named.mode == NONE) & (np.abs(log_f[:, None] - near) < MOVED).any(axis=1)
+    if not free.any():
+        return None
+    order = np.sort(log_f[free])
+    first, behind = (np.searchsorted(order, order + side) for side in (-STEADY, STEADY))
+    middle = order[np.argmax(behind - first)]
+    own = free & (np.abs(log_f - middle) <= STEADY)
+    share = len(np.unique(record.windows[own])) / len(named.time)
+    return Stray(tuple(lacking), float(np.exp(middle)), share)
 
 
 def summary(

@@ -175,3 +175,20 @@ def test_what_swings_otherwise_where_modes_are_expected_is_told(points: int) -> 
     told = unlike_modes(ModalReadings.of(model, mixed))
     assert len(told) == (points > 2)
     assert all("something swings in another shape" in one for one in told)
+
+
+@pytest.mark.parametrize("moved", [0.0, 0.26])
+def test_a_mode_that_is_lacking_and_what_swings_elsewhere_may_be_one(moved: float) -> None:
+    model, record = measured(1, Hidden())
+    own = ModalReadings.of(model, record)
+    of_mode = own.entries == own.modes.index("m5")
+    away = np.where(of_mode, np.log1p(-moved), 0.0)
+    turned = np.where(of_mode[:, None], np.roll(record.shapes, 1, axis=1), record.shapes)
+    other = replace(
+        record,
+        frequency=record.frequency * np.exp(away),
+        shapes=turned if moved else record.shapes,
+    )
+    told = unlike_modes(ModalReadings.of(model, other))
+    assert len(told) == (moved > 0)
+    assert all("1 mode (m5) is hardly ever found" in one for one in told)
