@@ -9,6 +9,7 @@ from rga.diagnosis.modal.likelihood import WEATHER, ModalLikelihood, bent_lines
 from rga.diagnosis.modal.points.changes import point_changes
 from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import (
+    LEAST_SCATTER,
     MOST_MEMORY,
     REPEATS,
     UNKNOWN_SCATTER,
@@ -283,6 +284,18 @@ def warnings_of(model: Model, readings: ModalReadings) -> list[str]:
         warnings.append(
             f"how the frequencies of {', '.join(assumed)} scatter is assumed, as f_sd states it or "
             f"else {100 * UNKNOWN_SCATTER:g} %: they were found in too few windows to show it"
+        )
+    alike = [
+        name
+        for name, shown, scatter in zip(
+            readings.modes, readings.shown, readings.scatter, strict=True
+        )
+        if shown and scatter <= LEAST_SCATTER
+    ]
+    if alike:
+        warnings.append(
+            f"the frequencies of {', '.join(alike)} hardly differ from one window to the next: "
+            "rows that repeat, or were rounded, tell nothing of how they scatter"
         )
     if len(readings.time) >= REPEATS:
         warnings += [

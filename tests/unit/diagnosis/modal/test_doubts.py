@@ -192,3 +192,16 @@ def test_a_mode_that_is_lacking_and_what_swings_elsewhere_may_be_one(moved: floa
     told = unlike_modes(ModalReadings.of(model, other))
     assert len(told) == (moved > 0)
     assert all("1 mode (m5) is hardly ever found" in one for one in told)
+
+
+@pytest.mark.parametrize("repeats", [False, True])
+def test_windows_that_are_all_alike_are_told(repeats: bool) -> None:
+    model, record = measured(1, Hidden())
+    if repeats:
+        own = ModalReadings.of(model, record)
+        first = np.exp(np.nanmedian(own.log_f, axis=0))
+        known = own.entries >= 0
+        alike = np.where(known, first[own.entries], record.frequency)
+        record = replace(record, frequency=alike)
+    told = warnings_of(model, ModalReadings.of(model, record))
+    assert any("hardly differ from one window to the next" in one for one in told) == repeats
