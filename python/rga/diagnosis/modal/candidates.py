@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import TypeGuard
 
 import numpy as np
 
@@ -140,8 +141,12 @@ def _trials(prior: Prior) -> tuple[float, ...]:
 
     What is lost changes modes by far more than slopes at usual sizes promise.
     """
-    may_be_lost = isinstance(prior, Factor) and prior.tail > 0.0
-    return (*prior.trials, prior.z(LOST)) if may_be_lost else prior.trials
+    return (*prior.trials, prior.z(LOST)) if may_be_lost(prior) else prior.trials
+
+
+def may_be_lost(prior: Prior) -> TypeGuard[Factor]:
+    """Whether a parameter says how much is left of what may be gone."""
+    return isinstance(prior, Factor) and prior.tail > 0.0
 
 
 def _farther(
