@@ -10,7 +10,6 @@ from rga.diagnosis.modal.points.changes import point_changes
 from rga.diagnosis.modal.prediction import Prediction
 from rga.diagnosis.modal.readings import (
     LEAST_SCATTER,
-    MOST_MEMORY,
     REPEATS,
     UNKNOWN_SCATTER,
     ModalReadings,
@@ -20,6 +19,7 @@ from rga.diagnosis.modal.readings import (
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.model import Model
 from rga.model.effect import Effect
+from rga.numerics.noise_with_memory import MOST_MEMORY
 from rga.quantities import counted, duration, short
 from rga.records.modal.record import ModalRecord
 

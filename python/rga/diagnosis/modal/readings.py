@@ -12,7 +12,7 @@ from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.numerics.lone_values import lone_values
-from rga.numerics.robust_spread import robust_spread
+from rga.numerics.noise_with_memory import noise_with_memory
 from rga.records.modal.record import ModalRecord
 from rga.simulation.modal.expected import FEWEST, Expected, mac
 from rga.simulation.modal.looks import unclear_looks
@@ -32,10 +32,6 @@ FEW = 0.1
 ROUNDS = 20
 #: share of its frequency by which a mode may always differ from one window to the next
 LONE = 0.005
-#: usual sizes beyond which a step is drawn in
-FAR_OUT = 3.0
-#: most that one window says of the next
-MOST_MEMORY = 0.95
 
 
 @dataclass(frozen=True)
@@ -325,8 +321,7 @@ def _noise(
     """Scatter of the frequencies about what contexts do to them, where it shows, and memory."""
     windows, modes = log_f.shape
     columns = np.column_stack([np.ones(windows), context_courses(contexts, windows).T])
-    scatter, memory = np.zeros(modes), np.zeros(modes)
-    steps = np.full((modes, 2), np.nan)
+    scatter, left = np.zeros(modes), np.full((windows, modes), np.nan)
     for mode in range(modes):
         seen = np.isfinite(log_f[:, mode])
         if seen.sum() < max(REPEATS, 2 * columns.shape[1]):
@@ -335,18 +330,12 @@ def _noise(
             continue
         own = columns[seen]
         amounts, *_ = np.linalg.lstsq(own, log_f[seen, mode], rcond=None)
-        left = log_f[seen, mode] - own @ amounts
-        steps[mode] = [_variance(left[lag:] - left[:-lag]) for lag in (1, 2)]
-    shown = np.isfinite(steps).all(1)
-    if shown.any():
-        # By steps from one window to the next and to the one after: a change that comes and stays
-        # is no noise. Of noise with memory m their variances are 2 s^2 (1 - m) and 2 s^2 (1 - m^2).
-        # Windows overlap or follow each other alike for all modes, and so does their memory.
-        near, far = steps[shown].T
-        kept = float(np.clip(np.median(far / np.maximum(near, 1e-300)) - 1.0, 0.0, MOST_MEMORY))
-        memory[shown] = kept
-        scatter[shown] = np.sqrt(near / (2.0 * (1.0 - kept)))
-    return np.maximum(scatter, LEAST_SCATTER), shown, memory
+        left[seen, mode] = log_f[seen, mode] - own @ amounts
+    # Windows overlap or follow each other alike for all modes, and so does their memory.
+    spreads, memory = noise_with_memory(left)
+    shown = np.isfinite(spreads)
+    scatter[shown] = spreads[shown]
+    return np.maximum(scatter, LEAST_SCATTER), shown, memory * shown
 
 
 def context_courses(contexts: dict[str, FloatArray], windows: int) -> FloatArray:
@@ -386,9 +375,3 @@ def _far_out(record: ModalRecord, mode: IntArray, standing: Sequence[FloatArray]
         own = order[state[order] == one]
         far[own] = lone_values(np.log(record.frequency[own]), LONE)
     return far
-
-
-def _variance(steps: FloatArray) -> float:
-    """Of steps about zero, the few that are far out drawn in."""
-    usual = robust_spread(steps)
-    return float((np.clip(steps, -FAR_OUT * usual, FAR_OUT * usual) ** 2).mean())
