@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TypeGuard
 
 import numpy as np
 
@@ -141,12 +140,8 @@ def _trials(prior: Prior) -> tuple[float, ...]:
 
     What is lost changes modes by far more than slopes at usual sizes promise.
     """
-    return (*prior.trials, prior.z(LOST)) if may_be_lost(prior) else prior.trials
-
-
-def may_be_lost(prior: Prior) -> TypeGuard[Factor]:
-    """Whether a parameter says how much is left of what may be gone."""
-    return isinstance(prior, Factor) and prior.tail > 0.0
+    may_be_lost = isinstance(prior, Factor) and prior.tail > 0.0
+    return (*prior.trials, prior.z(LOST)) if may_be_lost else prior.trials
 
 
 def _farther(

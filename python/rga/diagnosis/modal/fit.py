@@ -107,17 +107,6 @@ class ModalFit:
         lost = 0.5 * float(left @ left + there @ there) + self.likelihood.freedom(other)
         return lost - self.likelihood_loss - 0.5 * float(self.z @ self.z)
 
-    def possible(self, number: int, z: float) -> bool:
-        """Whether the data alone leave a coordinate possible, the others as they are."""
-        there = self.z.copy()
-        there[number] = z
-        other = predicted(self.likelihood, self.hypotheses, there)
-        if other is None:
-            return False
-        left = self.likelihood.residual(other)
-        lost = 0.5 * float(left @ left) + self.likelihood.freedom(other)
-        return lost - self.likelihood_loss < RISE
-
     def of(self, number: int) -> slice:
         """The coordinates of one hypothesis."""
         counts = [len(one.priors) for one in self.hypotheses]

@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from rga.diagnosis.assemble.effects import as_dead, cause_name, content
 from rga.diagnosis.modal.account import mode_gap, mode_groups, mode_readings, windows_of
-from rga.diagnosis.modal.candidates import ModalProspect, may_be_lost, modal_hypotheses
+from rga.diagnosis.modal.candidates import ModalProspect, modal_hypotheses
 from rga.diagnosis.modal.changes import change, moved_modes, moving_nothing, passing
 from rga.diagnosis.modal.checks import left_out_modes, modes_off, pairs_in_doubt, squares
 from rga.diagnosis.modal.doubts import (
@@ -58,8 +58,6 @@ from rga.simulation import ModalSimulator
 Progress = Callable[[str, float], None]
 #: decimals of log-odds
 DECIMALS = 2
-#: factor of what is lost altogether
-GONE = 1e-6
 #: of what may stand for a cause, by how many the modes are read anew
 READ_ANEW = 5
 #: share of the windows in which it may be in doubt which mode is which
@@ -237,12 +235,10 @@ def estimated(fit: ModalFit, number: int) -> Effect:
     """A cause as an effect with its estimates and their 90 % intervals."""
     hypothesis, where = fit.hypotheses[number], fit.of(number)
     values = {}
-    for at, (name, prior) in enumerate(hypothesis.priors.items(), where.start):
-        z, interval = fit.z[at], fit.interval[at]
+    for (name, prior), z, interval in zip(
+        hypothesis.priors.items(), fit.z[where], fit.interval[where], strict=True
+    ):
         ends = sorted(prior.value(float(end)) for end in interval)
-        if may_be_lost(prior) and fit.possible(at, prior.z(GONE)):
-            # What is usual tells little that is left from nothing at all, and the modes do not.
-            ends[0] = 0.0
         values[name] = Estimated(value=prior.value(float(z)), ci90=(ends[0], ends[1]))
     found = hypothesis.effect(fit.z[where]).with_values(values)
     if hypothesis.onset is None:

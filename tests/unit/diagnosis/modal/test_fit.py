@@ -9,7 +9,6 @@ from independent.modal_bridge import Hidden, measured
 from rga.diagnosis.modal.candidates import modal_hypotheses
 from rga.diagnosis.modal.fit import RISE, ModalFit, fitted
 from rga.diagnosis.modal.likelihood import ModalLikelihood
-from rga.diagnosis.modal.pipeline import estimated
 from rga.diagnosis.modal.readings import ModalReadings
 from rga.diagnosis.modal.trials import ModalTrials
 
@@ -38,19 +37,3 @@ def test_steep_slopes_at_a_jump_do_not_narrow_it(fit: ModalFit) -> None:
     assert (low, high) == pytest.approx(fit.interval[0], rel=0.1)
     for end in (low, high):
         assert steep._rise(np.array([end]) - fit.z) == pytest.approx(RISE, rel=0.3)
-
-
-@pytest.mark.parametrize(("left", "lost"), [(1e-5, True), (0.3, False)])
-def test_what_may_be_lost_altogether_is_told_so(left: float, lost: bool) -> None:
-    model, record = measured(0, Hidden(stiffness={"b0n-b1s": left}))
-    likelihood = ModalLikelihood(ModalTrials(model, ModalReadings.of(model, record)))
-    (lateral,) = [
-        one
-        for one in modal_hypotheses(likelihood.trials)
-        if (one.name, one.place.get("member"), one.onset) == ("member_stiffness", "b0n-b1s", None)
-    ]
-    fit = fitted(likelihood, [lateral], [lateral.priors["factor"].z(0.1)])
-    factor = estimated(fit, 0).factor  # type: ignore[attr-defined]
-    low, high = factor.ci90
-    assert (low == 0.0) == lost
-    assert low <= left < high
