@@ -201,10 +201,12 @@ def lamp_on_top() -> Hidden:
     return Hidden(mass={"t3n": 1000.0}, onset=ONSET)
 
 
-@pytest.mark.parametrize("make", [load_on_top, pytest.param(lamp_on_top, marks=thorough)])
+@pytest.mark.parametrize(
+    ("make", "left"), [(load_on_top, 0.2), pytest.param(lamp_on_top, 0.7, marks=thorough)]
+)
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=thorough) for seed in range(1, 4))])
 def test_something_heavy_is_found_where_the_model_states_no_mass(
-    make: Callable[[], Hidden], seed: int
+    make: Callable[[], Hidden], left: float, seed: int
 ) -> None:
     findings = diagnosed(seed, make)
     (first,) = findings.causes
@@ -213,7 +215,7 @@ def test_something_heavy_is_found_where_the_model_states_no_mass(
     assert set(near) <= {"t3n", "t3s"}
     low, high = near["t3n"]["mass"]["ci90"]
     assert low < make().mass["t3n"] < high
-    assert findings.gap.after < 0.7 * findings.gap.before
+    assert findings.gap.after < left * findings.gap.before
 
 
 GROUPS = {member["groups"][0] for member in bridge()["members"].values()}

@@ -55,7 +55,7 @@ class Stray:
     """What swings and is none of the modes expected, while some of these are hardly ever found.
 
     Attributes:
-        lacking: the modes.
+        lacking: those that it may be.
         frequency: at which it swings [Hz].
         share: of the windows in which it does.
     """
@@ -84,7 +84,8 @@ def stray_of(
     middle = order[np.argmax(behind - first)]
     own = free & (np.abs(log_f - middle) <= STEADY)
     share = len(np.unique(record.windows[own])) / len(named.time)
-    return Stray(tuple(lacking), float(np.exp(middle)), share)
+    may_be = np.array(lacking)[np.abs(near - middle) < MOVED]
+    return Stray(tuple(may_be.tolist()), float(np.exp(middle)), share)
 
 
 def summary(
